@@ -1,0 +1,32 @@
+/// Particle frames on disk: one reader a format, and sequences of frames.
+#pragma once
+
+#include "meniscus/base.h"
+
+namespace meniscus {
+
+/// Reads one frame. The format is told from the content first and the file name second.
+/// Particles with NaN or infinite positions are left out and counted. An empty frame is not an error.
+/// @throws Error  not_found, malformed_file, unsupported, io_failed; the message names file and position
+Particles read_particles(const std::string& path);
+
+/// One frame of a sequence that has been found but not read.
+struct FramePath {
+  std::string path;
+  std::optional<std::int64_t> number;  ///< the frame number in its name, if it has one
+};
+
+/// A sequence of frames in natural order (9 before 10).
+struct FrameSequence {
+  std::vector<FramePath> frames;
+  std::vector<std::string> notes;  ///< missing numbers, files left out, and why
+};
+
+/// Finds the frames that the arguments name: files, directories (every particle file in them), globs
+/// (`*`, `?`, `[...]`), and patterns with `{}` for the frame number. Natural order within an argument.
+/// A directory that holds several kinds of series (fluid and foam, say) gives the one that is most likely the
+/// water, and a note on the others.
+/// @throws Error  not_found: an argument that names nothing, a directory without frames
+FrameSequence find_frames(std::span<const std::string> arguments);
+
+}  // namespace meniscus
