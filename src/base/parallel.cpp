@@ -1,12 +1,24 @@
-#include <tbb/blocked_range.h>
+#include <algorithm>
+#include <atomic>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <algorithm>
+#include <tbb/task_arena.h>
 
 #include "meniscus/base.h"
 
 namespace meniscus {
+namespace {
+
+/// Threads asked for by the innermost ThreadLimit; 0: all cores.
+std::atomic<int> requested_threads{0};
+
+struct Limit {
+  tbb::global_control control;
+  int outer;
+};
+
+}  // namespace
 
 void parallel_for(std::size_t count, std::size_t grain, FunctionRef<void(std::size_t, std::size_t)> body) {
   if (count == 0) return;
@@ -17,19 +29,31 @@ void parallel_for(std::size_t count, std::size_t grain, FunctionRef<void(std::si
     run(0);
     return;
   }
+  const int requested = requested_threads.load();
+  if (requested > tbb::info::default_concurrency()) {
+    // The default arena has one slot a core; more threads than cores need an arena of their own.
+    tbb::task_arena(requested).execute([&] { tbb::parallel_for(std::size_t{0}, pieces, run); });
+    return;
+  }
   tbb::parallel_for(std::size_t{0}, pieces, run);
 }
 
-ThreadLimit::ThreadLimit(int count)
-    : control_(count > 0 ? new tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                                                   static_cast<std::size_t>(count))
-                         : nullptr) {}
+ThreadLimit::ThreadLimit(int count) : control_(nullptr) {
+  if (count <= 0) return;
+  control_ = new Limit{{tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)},
+                       requested_threads.exchange(count)};
+}
 
-ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+ThreadLimit::~ThreadLimit() {
+  if (!control_) return;
+  auto* limit = static_cast<Limit*>(control_);
+  requested_threads.store(limit->outer);
+  delete limit;
+}
 
 int thread_count() {
-  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return static_cast<int>(std::min<std::size_t>(allowed, static_cast<std::size_t>(tbb::info::default_concurrency())));
+  const int requested = requested_threads.load();
+  return requested > 0 ? requested : tbb::info::default_concurrency();
 }
 
 }  // namespace meniscus

@@ -1,0 +1,6 @@
+/// Pure functions of the field, written once for C++ and GLSL.
+#pragma once
+
+#include "meniscus/formulas/eigen.h"
+#include "meniscus/formulas/kernels.h"
+#include "meniscus/formulas/optics.h"
