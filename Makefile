@@ -1,0 +1,36 @@
+# The few commands that one needs; everything behind them is CMake (CMakePresets.json) and tools/.
+JOBS ?= $(shell nproc)
+BENCH ?= raycast --particles 1000000 --size 1024x1024 --json
+PROGRAM := build/release/meniscus
+
+.PHONY: all build demo test bench format packages clean
+all: build
+
+build: build/release/build.ninja
+	cmake --build --preset release --parallel $(JOBS)
+
+# A short film and a still from the frames in data/, with the program alone: no test is built.
+demo: build/release/build.ninja
+	cmake --build --preset release --parallel $(JOBS) --target meniscus_app
+	tools/demo.sh $(PROGRAM)
+
+test: build
+	ctest --preset release --parallel $(JOBS)
+
+bench: build/release/build.ninja
+	cmake --build --preset release --parallel $(JOBS) --target meniscus_app
+	$(PROGRAM) bench $(BENCH)
+
+# Once configured, ninja itself sees when a CMake file has changed.
+build/release/build.ninja: CMakePresets.json | packages
+	cmake --preset release
+
+# What packages.txt lists and this machine lacks; says nothing when all is there.
+packages:
+	@tools/install_packages.sh
+
+format:
+	@tools/format.sh
+
+clean:
+	rm -rf build demo
