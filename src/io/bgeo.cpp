@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "io/readers.h"
+#include "io/values.h"
+
+namespace meniscus::io {
+namespace {
+
+// Header: "Bgeo" "V", then nine 32-bit numbers: version, points, primitives, point groups, primitive groups,
+// point attributes, vertex attributes, primitive attributes, detail attributes.
+constexpr std::size_t kHeaderSize = 5 + 9 * 4;
+constexpr std::size_t kWord = 4;
+
+enum class Kind : std::uint32_t { real = 0, integer = 1, text = 2, mixed = 3, index = 4, vector = 5 };
+
+struct PointAttribute {
+  std::string name;
+  std::size_t words = 0;  ///< 32-bit values a point
+  Kind kind = Kind::real;
+};
+
+struct Header {
+  std::uint64_t points = 0;
+  std::uint64_t primitives = 0;
+  std::vector<PointAttribute> attributes;
+  std::uint64_t first_point = 0;  ///< byte offset of the first point
+  std::uint64_t stride = 0;       ///< bytes a point: x, y, z, w and the attributes
+};
+
+/// A position in the header that knows when the bytes are not enough.
+struct HeaderCursor {
+  const Source& source;
+  std::uint64_t at;
+  bool short_of_bytes = false;
+
+  bool has(std::uint64_t size) {
+    if (size <= source.bytes.size() - at) return true;
+    short_of_bytes = true;
+    return false;
+  }
+  std::uint32_t number_32() {
+    if (!has(4)) return 0;
+    at += 4;
+    return big_endian_32(source.bytes.data() + at - 4);
+  }
+  std::uint16_t number_16() {
+    if (!has(2)) return 0;
+    at += 2;
+    return big_endian_16(source.bytes.data() + at - 2);
+  }
+  std::string text() {
+    const std::uint16_t size = number_16();
+    if (short_of_bytes || !has(size)) return {};
+    at += size;
+    return std::string(source.bytes.data() + at - size, size);
+  }
+  void skip(std::uint64_t size) {
+    if (has(size)) at += size;
+  }
+};
+
+/// The header and the point attributes' descriptions; none if the bytes end inside them.
+std::optional<Header> header_of(const Source& source) {
+  if (source.bytes.size() < kHeaderSize) return std::nullopt;
+  HeaderCursor cursor{source, 5};
+  if (const std::uint32_t version = cursor.number_32(); version != 5) {
+    source.unsupported(fmt::format("is BGEO of version {}; only version 5 is read", version),
+                       "export it as classic BGEO version 5");
+  }
+  Header header;
+  header.points = cursor.number_32();
+  header.primitives = cursor.number_32();
+  cursor.skip(2 * kWord);  // numbers of groups
+  const std::uint32_t attribute_count = cursor.number_32();
+  cursor.skip(3 * kWord);  // numbers of other attributes
+
+  // Each description: name, number of values, type; then a default value each, or the table of strings.
+  header.stride = 4 * kWord;
+  for (std::uint32_t i = 0; i < attribute_count; ++i) {
+    PointAttribute attribute;
+    const std::uint64_t start = cursor.at;
+    attribute.name = cursor.text();
+    attribute.words = cursor.number_16();
+    attribute.kind = static_cast<Kind>(cursor.number_32());
+    if (cursor.short_of_bytes) return std::nullopt;
+    switch (attribute.kind) {
+      case Kind::real:
+      case Kind::integer:
+      case Kind::vector:
+        cursor.skip(attribute.words * kWord);
+        break;
+      case Kind::index: {
+        const std::uint32_t strings = cursor.number_32();
+        for (std::uint32_t s = 0; s < strings && !cursor.short_of_bytes; ++s) cursor.text();
+        break;
+      }
+      case Kind::text:
+      case Kind::mixed:
+      default:
+        source.malformed(fmt::format("point attribute '{}' is of an unknown type", attribute.name), start,
+                         "0, 1, 4 or 5", fmt::format("{}", static_cast<std::uint32_t>(attribute.kind)));
+    }
+    if (cursor.short_of_bytes) return std::nullopt;
+    header.stride += attribute.words * kWord;
+    header.attributes.push_back(std::move(attribute));
+  }
+  header.first_point = cursor.at;
+  return header;
+}
+
+Particles points_of(const Source& source, const Header& header) {
+  source.require(header.first_point, header.points, header.stride, "points");
+  const auto count = static_cast<std::size_t>(header.points);
+  const auto stride = static_cast<std::size_t>(header.stride);
+  const char* first = source.bytes.data() + header.first_point;
+  const auto column = [&](Scalar type, std::size_t word, std::size_t words, std::vector<float>& values) {
+    values.resize(count * words);
+    read_columns(type, std::endian::big, first + word * kWord, stride, count, words, values.data());
+  };
+
+  Particles particles;
+  particles.format = "bgeo";
+  column(Scalar::float32, 0, 1, particles.x);
+  column(Scalar::float32, 1, 1, particles.y);
+  column(Scalar::float32, 2, 1, particles.z);
+  std::size_t word = 4;  // the fourth is the homogeneous w, 1
+  std::vector<std::string> texts;
+  for (const PointAttribute& description : header.attributes) {
+    if (description.kind == Kind::index) {
+      texts.push_back(description.name);
+    } else if (description.words > 0) {
+      Attribute& attribute = particles.attributes.emplace_back();
+      attribute.name = description.name;
+      attribute.components = static_cast<int>(description.words);
+      column(description.kind == Kind::integer ? Scalar::int32 : Scalar::float32, word, description.words,
+             attribute.values);
+    }
+    word += description.words;
+  }
+  if (!texts.empty()) {
+    const std::string more = texts.size() > 1 ? fmt::format(" and {} more", texts.size() - 1) : "";
+    particles.notes.push_back(fmt::format("left out what holds text: attribute '{}'{}", texts[0], more));
+  }
+  if (header.primitives > 0) {
+    particles.notes.push_back(fmt::format("{} primitives were left out: only the points are read", header.primitives));
+  }
+  return particles;
+}
+
+[[noreturn]] void short_header(const Source& source) {
+  source.malformed("the file ends inside its header", source.bytes.size());
+}
+
+}  // namespace
+
+Particles read_bgeo(const Source& source) {
+  const std::optional<Header> header = header_of(source);
+  if (!header) short_header(source);
+  return points_of(source, *header);
+}
+
+Particles read_bgeo(const std::string& path, Gunzip& stream) {
+  // Decompress until the header is whole, then as much as its points take.
+  std::uint64_t size = 1 << 12;
+  std::optional<Header> header;
+  while (true) {
+    stream.grow_to(size);
+    header = header_of(Source{path, stream.bytes()});
+    if (header || stream.ended()) break;
+    size = 2 * stream.bytes().size();
+  }
+  if (!header) short_header(Source{path, stream.bytes()});
+  stream.grow_to(header->first_point + header->points * header->stride);
+  const Source source{path, stream.bytes()};
+  source.require(header->first_point, header->points, header->stride, "points");
+  stream.check_rest();
+  return points_of(source, *header);
+}
+
+}  // namespace meniscus::io

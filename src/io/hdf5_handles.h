@@ -1,0 +1,80 @@
+/// What is read of an HDF5 file, over the C library: handles that close themselves, names, checked arrays.
+#pragma once
+
+#include <hdf5.h>
+
+#include "meniscus/base.h"
+
+namespace meniscus::io {
+
+/// An HDF5 identifier and the function that closes it; negative where opening failed.
+class Hdf5Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  ~Hdf5Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Hdf5Handle(Hdf5Handle&& other) noexcept : id_(std::exchange(other.id_, hid_t{-1})), close_(other.close_) {}
+  Hdf5Handle(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  hid_t get() const { return id_; }
+  explicit operator bool() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+/// Keeps the library from printing its errors while it lives; restores what was there before.
+class QuietHdf5 {
+ public:
+  QuietHdf5() {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &argument_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, print_, argument_); }
+  QuietHdf5(const QuietHdf5&) = delete;
+  QuietHdf5& operator=(const QuietHdf5&) = delete;
+
+ private:
+  H5E_auto2_t print_ = nullptr;
+  void* argument_ = nullptr;
+};
+
+/// An open file or group, for reading.
+class Hdf5Group {
+ public:
+  /// @throws Error malformed_file: no HDF5 file, or a truncated one
+  static Hdf5Group open_file(const std::string& path);
+
+  /// The group inside this one, or none.
+  std::optional<Hdf5Group> group(const std::string& name) const;
+  /// Names of everything in it, sorted.
+  std::vector<std::string> names() const;
+  /// Number of values of a numeric array of one dimension; none if there is no such array.
+  std::optional<std::uint64_t> length_of(const std::string& name) const;
+  /// The array as floats.
+  /// @throws Error malformed_file: damaged, or longer than the stored bytes can justify
+  std::vector<float> read(const std::string& name) const;
+  /// A number stored as an attribute of this group or as an array of one value in it.
+  std::optional<double> number(const std::string& name) const;
+  /// An attribute of one number of the array `array` in this group.
+  std::optional<double> number_of(const std::string& array, const std::string& name) const;
+
+ private:
+  Hdf5Group(Hdf5Handle handle, std::string path, std::uint64_t file_size)
+      : handle_(std::move(handle)), path_(std::move(path)), file_size_(file_size) {}
+  std::optional<Hdf5Handle> numeric_array(const std::string& name) const;
+  void check_size(hid_t dataset, const std::string& name) const;
+  Hdf5Handle handle_;
+  std::string path_;
+  std::uint64_t file_size_;
+};
+
+}  // namespace meniscus::io

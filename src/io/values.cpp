@@ -1,0 +1,113 @@
+#include "io/values.h"
+
+#include <cstring>
+
+namespace meniscus::io {
+namespace {
+
+template <std::size_t kSize>
+struct Word;
+template <>
+struct Word<1> {
+  using type = std::uint8_t;
+  static type swapped(type v) { return v; }
+};
+template <>
+struct Word<2> {
+  using type = std::uint16_t;
+  static type swapped(type v) { return __builtin_bswap16(v); }
+};
+template <>
+struct Word<4> {
+  using type = std::uint32_t;
+  static type swapped(type v) { return __builtin_bswap32(v); }
+};
+template <>
+struct Word<8> {
+  using type = std::uint64_t;
+  static type swapped(type v) { return __builtin_bswap64(v); }
+};
+
+template <class T, bool kSwap>
+T load(const char* from) {
+  using W = Word<sizeof(T)>;
+  typename W::type word;
+  std::memcpy(&word, from, sizeof word);
+  if constexpr (kSwap) word = W::swapped(word);
+  return std::bit_cast<T>(word);
+}
+
+template <class T, bool kSwap>
+void convert(const char* first, std::size_t stride, std::size_t begin, std::size_t end, std::size_t components,
+             float* target) {
+  for (std::size_t row = begin; row < end; ++row) {
+    const char* from = first + row * stride;
+    float* to = target + row * components;
+    for (std::size_t c = 0; c < components; ++c) to[c] = static_cast<float>(load<T, kSwap>(from + c * sizeof(T)));
+  }
+}
+
+/// Calls visit with a value of the type that `type` names.
+template <class Visit>
+auto with_type(Scalar type, Visit visit) {
+  switch (type) {
+    case Scalar::int8:
+      return visit(std::int8_t{});
+    case Scalar::uint8:
+      return visit(std::uint8_t{});
+    case Scalar::int16:
+      return visit(std::int16_t{});
+    case Scalar::uint16:
+      return visit(std::uint16_t{});
+    case Scalar::int32:
+      return visit(std::int32_t{});
+    case Scalar::uint32:
+      return visit(std::uint32_t{});
+    case Scalar::int64:
+      return visit(std::int64_t{});
+    case Scalar::uint64:
+      return visit(std::uint64_t{});
+    case Scalar::float32:
+      return visit(float{});
+    case Scalar::float64:
+      break;
+  }
+  return visit(double{});
+}
+
+}  // namespace
+
+std::size_t size_of(Scalar type) {
+  return with_type(type, [](auto value) { return sizeof(value); });
+}
+
+void read_columns(Scalar type, std::endian order, const char* first, std::size_t stride, std::size_t rows,
+                  std::size_t components, float* target) {
+  with_type(type, [&](auto value) {
+    using T = decltype(value);
+    parallel_for(rows, 1 << 16, [&](std::size_t begin, std::size_t end) {
+      if (order == std::endian::native) {
+        convert<T, false>(first, stride, begin, end, components, target);
+      } else {
+        convert<T, true>(first, stride, begin, end, components, target);
+      }
+    });
+  });
+}
+
+double read_value(Scalar type, std::endian order, const char* first) {
+  return with_type(type, [&](auto value) {
+    using T = decltype(value);
+    return static_cast<double>(order == std::endian::native ? load<T, false>(first) : load<T, true>(first));
+  });
+}
+
+std::uint32_t big_endian_32(const char* first) {
+  return load<std::uint32_t, std::endian::native == std::endian::little>(first);
+}
+
+std::uint16_t big_endian_16(const char* first) {
+  return load<std::uint16_t, std::endian::native == std::endian::little>(first);
+}
+
+}  // namespace meniscus::io
