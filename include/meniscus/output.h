@@ -16,7 +16,7 @@ Image<Rgb8> read_png(const std::string& path);
 
 /// One layer of an EXR file: exactly one of `scalar` and `vector` is set; 32-bit float unless half.
 struct ExrLayer {
-  std::string name;  ///< "" for the main R, G, B; else channels name.R/G/B, name.X/Y/Z or name
+  std::string name = {};  ///< "" for the main R, G, B; else channels name.R/G/B, name.X/Y/Z or name
   const Image<float>* scalar = nullptr;
   const Image<vec3>* vector = nullptr;
   bool is_direction = false;  ///< channels X, Y, Z instead of R, G, B
