@@ -1,0 +1,24 @@
+/// Which cells' particles no ray can meet first, and what makes leaving them out safe.
+#pragma once
+
+#include "surface/raycast_field.h"
+
+namespace meniscus {
+
+/// A set of spheres, by arrays.
+struct SphereSet {
+  std::vector<float> x, y, z, radius;
+  std::size_t size() const { return x.size(); }
+  void add(vec3 centre, float r);
+};
+
+/// Marks the cells that are well filled, as are all 26 around them, in field.hidden (dense grids only; it stays
+/// empty where nothing is hidden).
+void find_hidden_cells(RaycastField& field);
+
+/// The spheres that a ray has to enter before it can meet the surface: those of all particles that are not
+/// hidden, and one around each hidden cell that touches one that is not. A ray that slips between the particles
+/// in front still meets the second kind, so that no pixel is lost, whatever the particles look like.
+SphereSet entry_spheres(const RaycastField& field);
+
+}  // namespace meniscus

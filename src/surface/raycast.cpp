@@ -1,0 +1,374 @@
+// The ray-cast surface [Xiao2017]: splatted entry depth, marched iso-surface, blended and filtered normals.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "surface/hidden_cells.h"
+#include "surface/normal_filter.h"
+#include "surface/packet.h"
+#include "surface/splat.h"
+
+namespace meniscus {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kMassGrain = 4096;
+
+/// Sixteen picture points that are drawn together, and where their results go.
+struct Block {
+  vec2 points[kPacket];
+  std::size_t targets[kPacket];
+  PacketMask mask = 0;
+};
+
+/// Gives the packet's rays; lanes that are not in the mask repeat the first one that is.
+void set_rays(const View& view, const Block& block, PacketRays& rays) {
+  const int first = __builtin_ctz(block.mask);
+  for (int l = 0; l < kPacket; ++l) {
+    const Ray ray = view.ray(block.points[(block.mask >> l) & 1u ? l : first]);
+    rays.ox[l] = ray.origin.x;
+    rays.oy[l] = ray.origin.y;
+    rays.oz[l] = ray.origin.z;
+    rays.dx[l] = ray.direction.x;
+    rays.dy[l] = ray.direction.y;
+    rays.dz[l] = ray.direction.z;
+  }
+}
+
+/// Calls visit(block) for tiles of 4 x 4 pixels of the picture in parallel, or for sixteen points after another.
+template <class Visit>
+void for_each_block(const View& view, std::span<const vec2> points, Visit visit) {
+  if (!points.empty()) {
+    parallel_for((points.size() + kPacket - 1) / kPacket, 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t at = begin; at < end; ++at) {
+        Block block;
+        for (std::size_t l = 0; l < kPacket; ++l) {
+          const std::size_t i = at * kPacket + l;
+          if (i >= points.size()) break;
+          block.points[l] = points[i];
+          block.targets[l] = i;
+          block.mask |= 1u << l;
+        }
+        visit(block);
+      }
+    });
+    return;
+  }
+  constexpr int kSide = 4;
+  const auto tiles_x = static_cast<std::size_t>((view.width + kSide - 1) / kSide);
+  const auto tiles_y = static_cast<std::size_t>((view.height + kSide - 1) / kSide);
+  parallel_for(tiles_y * tiles_x, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      const int x0 = static_cast<int>(tile % tiles_x) * kSide, y0 = static_cast<int>(tile / tiles_x) * kSide;
+      Block block;
+      for (int l = 0; l < kPacket; ++l) {
+        const int x = x0 + l % kSide, y = y0 + l / kSide;
+        if (x >= view.width || y >= view.height) continue;
+        block.points[l] = {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+        block.targets[l] = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+        block.mask |= 1u << l;
+      }
+      visit(block);
+    }
+  });
+}
+
+/// Kept by each thread from one packet to the next.
+PacketList& thread_list() {
+  thread_local PacketList list;
+  return list;
+}
+
+PacketPoints points_of(vec3 p) {
+  PacketPoints points;
+  std::fill_n(points.x, kPacket, p.x);
+  std::fill_n(points.y, kPacket, p.y);
+  std::fill_n(points.z, kPacket, p.z);
+  return points;
+}
+
+class RaycastSurface final : public Surface {
+ public:
+  RaycastSurface(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours, StageTimes* times)
+      : field_([&] {
+          StageTimer timer(times, "sort");
+          return make_field(particles, options, colours);
+        }()) {
+    StageTimer timer(times, "masses");
+    if (field_.options.cull_interior) find_hidden_cells(field_);
+    if (field_.options.keep_thin) find_masses();
+    spheres_ = entry_spheres(field_);
+    thickness_radius_ = field_.options.spacing;
+  }
+
+  SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
+    SurfaceBuffers coarse = find_entries(view, times);
+    if (points.empty()) {
+      find_surface(view, {}, coarse, times);
+      if (field_.options.want_thickness) coarse.thickness = thickness(view, {}, times);
+      return coarse;
+    }
+    if (field_.options.want_thickness) coarse.thickness = thickness(view, {}, times);
+    return refine(view, coarse, points, times);
+  }
+
+  SurfaceBuffers refine(const View& view, const SurfaceBuffers& coarse, std::span<const vec2> points,
+                        StageTimes* times) const override {
+    SurfaceBuffers fine;
+    const int count = static_cast<int>(points.size());
+    fine.eye_in_water = coarse.eye_in_water;
+    fine.entry = Image<float>(count, 1, kInfinity);
+    fine.exit = Image<float>(count, 1, -kInfinity);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      // A point between pixel centres may meet what its neighbours meet.
+      const int x = static_cast<int>(points[i].x), y = static_cast<int>(points[i].y);
+      for (int qy = std::max(y - 1, 0); qy <= std::min(y + 1, view.height - 1); ++qy)
+        for (int qx = std::max(x - 1, 0); qx <= std::min(x + 1, view.width - 1); ++qx) {
+          fine.entry[i] = std::min(fine.entry[i], coarse.entry(qx, qy));
+          fine.exit[i] = std::max(fine.exit[i], coarse.exit(qx, qy));
+        }
+    }
+    find_surface(view, points, fine, times);
+    if (!coarse.normal.empty()) take_filtered_normals(view, coarse, points, fine);
+    if (!coarse.thickness.empty()) fine.thickness = sampled(coarse.thickness, points);
+    return fine;
+  }
+
+  Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
+    StageTimer timer(times, "thickness");
+    const ParticleGrid& grid = field_.grid;
+    // Each sphere counts for the water of one particle; spheres a spacing wide overlap into an even sheet.
+    const float s = field_.options.spacing, r = thickness_radius_;
+    const float weight = s * s * s / (4.0f / 3.0f * 3.14159265f * r * r * r);
+    const int stride = thickness_stride(view);
+    const Image<float> coarse = splat_chords(view, {{grid.x(), grid.size()}, {grid.y(), grid.size()}, {grid.z(), grid.size()}, {&r, 1}},
+                                             weight, stride);
+    return enlarged(coarse, stride, view, points);
+  }
+
+  Bounds bounds() const override { return field_.grid.bounds().grown(field_.options.smoothing_length); }
+
+ private:
+  /// Masses by the rule of raycast_field.h, and the spheres of particles that are packed closely. Particles that
+  /// nobody sees keep a mass of one, which is what the rule gives inside the water.
+  void find_masses() {
+    const MassRule rule = mass_rule(field_.options);
+    const ParticleGrid& grid = field_.grid;
+    const float per_cell = 1.0f / grid.cell_size();
+    const auto cell_of = [&](std::size_t i) {
+      const vec3 at = (grid.position(i) - grid.bounds().low) * per_cell;
+      return grid.cell_index(std::min(static_cast<int>(at.x), grid.cells_x() - 1), std::min(static_cast<int>(at.y), grid.cells_y() - 1),
+                             std::min(static_cast<int>(at.z), grid.cells_z() - 1));
+    };
+    parallel_for(grid.size(), kMassGrain, [&](std::size_t begin, std::size_t end) {
+      PacketPoints points;
+      alignas(64) float density[kPacket];
+      for (std::size_t i = begin; i < end;) {
+        const std::size_t cell = cell_of(i);
+        if (field_.is_hidden(cell)) {
+          ++i;
+          continue;
+        }
+        // A packet is up to sixteen particles of this cell and the next one in its row.
+        std::size_t last = i + 1;
+        while (last < end && last - i < kPacket) {
+          const std::size_t other = cell_of(last);
+          if (other > cell + 1 || (other != cell && field_.is_hidden(other))) break;
+          ++last;
+        }
+        for (std::size_t l = 0; l < kPacket; ++l) {
+          const std::size_t from = std::min(i + l, last - 1);
+          points.x[l] = grid.x()[from];
+          points.y[l] = grid.y()[from];
+          points.z[l] = grid.z()[from];
+        }
+        const auto mask = static_cast<PacketMask>((1u << (last - i)) - 1u);
+        density_packet(field_, points, mask, true, thread_list(), density);
+        for (std::size_t l = 0; i < last; ++i, ++l) {
+          field_.mass[i] = mass_at(rule, density[l]);
+          field_.entry_radius[i] = entry_radius_at(field_.options, density[l]);
+        }
+      }
+    });
+  }
+
+  /// Whether rays of this view start inside the water.
+  bool starts_inside(const View& view) const {
+    if (view.projection != Projection::perspective || field_.grid.size() == 0) return false;
+    alignas(64) float density[kPacket];
+    density_packet(field_, points_of(view.eye), 1u, false, thread_list(), density);
+    return density[0] >= field_.options.iso;
+  }
+
+  SurfaceBuffers find_entries(const View& view, StageTimes* times) const {
+    StageTimer timer(times, "splat");
+    SurfaceBuffers buffers;
+    buffers.eye_in_water = starts_inside(view);
+    if (!buffers.eye_in_water) {
+      splat_depth(view, {spheres_.x, spheres_.y, spheres_.z, spheres_.radius}, buffers.entry, buffers.exit);
+      return buffers;
+    }
+    const Bounds box = bounds();
+    float farthest = 0;
+    for (const float x : {box.low.x, box.high.x})
+      for (const float y : {box.low.y, box.high.y})
+        for (const float z : {box.low.z, box.high.z}) farthest = std::max(farthest, glm::length(vec3{x, y, z} - view.eye));
+    buffers.entry = Image<float>(view.width, view.height, 0.0f);
+    buffers.exit = Image<float>(view.width, view.height, farthest);
+    return buffers;
+  }
+
+  /// Depth, normals and colours from the entries; all images as large as buffers.entry.
+  void find_surface(const View& view, std::span<const vec2> points, SurfaceBuffers& buffers, StageTimes* times) const {
+    const int width = buffers.entry.width(), height = buffers.entry.height();
+    buffers.depth = Image<float>(width, height, kInfinity);
+    buffers.coverage = Image<float>(width, height, 0.0f);
+    {
+      StageTimer timer(times, "march");
+      for_each_block(view, points, [&](const Block& block) {
+        alignas(64) float entry[kPacket], exit[kPacket], depth[kPacket];
+        PacketMask mask = 0;
+        for (int l = 0; l < kPacket; ++l) {
+          entry[l] = exit[l] = 0.0f;
+          if (!((block.mask >> l) & 1u)) continue;
+          entry[l] = buffers.entry[block.targets[l]];
+          exit[l] = buffers.exit[block.targets[l]];
+          if (entry[l] <= exit[l]) mask |= 1u << l;
+        }
+        if (mask == 0) return;
+        PacketRays rays;
+        set_rays(view, block, rays);
+        for (int l = 0; l < kPacket; ++l)
+          if (!((mask >> l) & 1u)) entry[l] = entry[__builtin_ctz(mask)];
+        march_packet(field_, rays, mask, entry, exit, buffers.eye_in_water, thread_list(), depth);
+        for (int l = 0; l < kPacket; ++l)
+          if (((mask >> l) & 1u) && depth[l] < kInfinity) {
+            buffers.depth[block.targets[l]] = depth[l];
+            buffers.coverage[block.targets[l]] = 1.0f;
+          }
+      });
+    }
+    if (!field_.options.want_normals) return;
+    {
+      StageTimer timer(times, "normals");
+      buffers.normal = Image<vec3>(width, height, vec3{0});
+      if (field_.has_colours()) buffers.colour = Image<vec3>(width, height, vec3{0});
+      for_each_block(view, points, [&](const Block& block) { find_normals(view, block, buffers); });
+    }
+    if (!points.empty() || field_.options.filter_radius == 0) return;
+    StageTimer timer(times, "filter");
+    buffers.normal = filtered_normals(view, buffers.depth, buffers.normal, field_.options.filter_radius, filter_tolerance());
+  }
+
+  float filter_tolerance() const { return 0.5f * field_.options.spacing; }
+
+  void find_normals(const View& view, const Block& block, SurfaceBuffers& buffers) const {
+    PacketMask mask = 0;
+    for (int l = 0; l < kPacket; ++l)
+      if (((block.mask >> l) & 1u) && buffers.depth[block.targets[l]] < kInfinity) mask |= 1u << l;
+    if (mask == 0) return;
+    PacketPoints points, towards, normals;
+    for (int l = 0; l < kPacket; ++l) {
+      const int lane = (mask >> l) & 1u ? l : __builtin_ctz(mask);
+      const Ray ray = view.ray(block.points[lane]);
+      const vec3 point = ray.origin + buffers.depth[block.targets[lane]] * ray.direction;
+      points.x[l] = point.x;
+      points.y[l] = point.y;
+      points.z[l] = point.z;
+      towards.x[l] = -ray.direction.x;
+      towards.y[l] = -ray.direction.y;
+      towards.z[l] = -ray.direction.z;
+    }
+    normals_packet(field_, points, mask, towards, thread_list(), normals);
+    for (int l = 0; l < kPacket; ++l)
+      if ((mask >> l) & 1u) buffers.normal[block.targets[l]] = {normals.x[l], normals.y[l], normals.z[l]};
+    if (!field_.has_colours()) return;
+    PacketPoints colours;
+    colours_packet(field_, points, mask, thread_list(), colours);
+    for (int l = 0; l < kPacket; ++l)
+      if ((mask >> l) & 1u) buffers.colour[block.targets[l]] = {colours.x[l], colours.y[l], colours.z[l]};
+  }
+
+  /// Gives single points the smoothness of the filtered map: the mean of the normals around that belong to the
+  /// same piece of surface, where there are any.
+  void take_filtered_normals(const View& view, const SurfaceBuffers& coarse, std::span<const vec2> points,
+                             SurfaceBuffers& fine) const {
+    if (fine.normal.empty() || field_.options.filter_radius == 0) return;
+    const float tolerance = filter_tolerance();
+    parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!(fine.depth[i] < kInfinity)) continue;
+        const Ray ray = view.ray(points[i]);
+        const vec3 own = ray.origin + fine.depth[i] * ray.direction;
+        const int x = static_cast<int>(points[i].x), y = static_cast<int>(points[i].y);
+        vec3 sum{0};
+        for (int qy = std::max(y - 1, 0); qy <= std::min(y + 1, view.height - 1); ++qy)
+          for (int qx = std::max(x - 1, 0); qx <= std::min(x + 1, view.width - 1); ++qx) {
+            const float depth = coarse.depth(qx, qy);
+            if (!(depth < kInfinity)) continue;
+            const Ray other = view.ray({static_cast<float>(qx) + 0.5f, static_cast<float>(qy) + 0.5f});
+            const vec3 normal = coarse.normal(qx, qy);
+            const float off_plane = glm::dot(normal, own - (other.origin + depth * other.direction)) / tolerance;
+            const float agreement = glm::dot(normal, fine.normal[i]);
+            sum += normal * std::exp(-0.5f * off_plane * off_plane + (agreement - 1.0f) / kNormalSharpness);
+          }
+        sum += 0.05f * fine.normal[i];
+        fine.normal[i] = glm::normalize(sum);
+      }
+    });
+  }
+
+  /// Pixels between the samples of the thickness: two to three samples a spacing in the middle of the water.
+  int thickness_stride(const View& view) const {
+    const Bounds box = field_.grid.bounds();
+    if (box.empty()) return 1;
+    const float depth = std::max(glm::dot(box.centre() - view.eye, view.forward), field_.options.spacing);
+    const float spacing_px = field_.options.spacing / view.pixel_size(depth);
+    return std::clamp(static_cast<int>(spacing_px / 2.0f), 1, 8);
+  }
+
+  /// Bilinear between the centres of blocks of stride x stride pixels.
+  static float between(const Image<float>& coarse, int stride, float x, float y) {
+    const float u = std::clamp(x / static_cast<float>(stride) - 0.5f, 0.0f, static_cast<float>(coarse.width() - 1));
+    const float v = std::clamp(y / static_cast<float>(stride) - 0.5f, 0.0f, static_cast<float>(coarse.height() - 1));
+    const int x0 = static_cast<int>(u), y0 = static_cast<int>(v);
+    const int x1 = std::min(x0 + 1, coarse.width() - 1), y1 = std::min(y0 + 1, coarse.height() - 1);
+    const float fu = u - static_cast<float>(x0), fv = v - static_cast<float>(y0);
+    return (1 - fv) * ((1 - fu) * coarse(x0, y0) + fu * coarse(x1, y0)) + fv * ((1 - fu) * coarse(x0, y1) + fu * coarse(x1, y1));
+  }
+
+  static Image<float> sampled(const Image<float>& picture, std::span<const vec2> points) {
+    Image<float> values(static_cast<int>(points.size()), 1);
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = between(picture, 1, points[i].x, points[i].y);
+    return values;
+  }
+
+  static Image<float> enlarged(const Image<float>& coarse, int stride, const View& view, std::span<const vec2> points) {
+    if (!points.empty()) {
+      Image<float> values(static_cast<int>(points.size()), 1);
+      for (std::size_t i = 0; i < points.size(); ++i) values[i] = between(coarse, stride, points[i].x, points[i].y);
+      return values;
+    }
+    if (stride == 1) return coarse;
+    Image<float> full(view.width, view.height);
+    parallel_for(static_cast<std::size_t>(view.height), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end; ++y)
+        for (int x = 0; x < view.width; ++x)
+          full(x, static_cast<int>(y)) = between(coarse, stride, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+    });
+    return full;
+  }
+
+  RaycastField field_;
+  SphereSet spheres_;
+  float thickness_radius_ = 0;  ///< m
+};
+
+}  // namespace
+
+std::unique_ptr<Surface> make_raycast_surface(const Particles& particles, const RaycastOptions& options,
+                                              std::span<const vec3> colours, StageTimes* times) {
+  return std::make_unique<RaycastSurface>(particles, options, colours, times);
+}
+
+}  // namespace meniscus

@@ -1,0 +1,62 @@
+/// What the stages of the ray-cast surface share: the resolved options and the particles with their masses.
+#pragma once
+
+#include "meniscus/surface.h"
+#include "particles/grid.h"
+
+namespace meniscus {
+
+/// The density field of the particles, relative to the density inside the water:
+///   rho(x) = spacing^3 sum_j m_j W(|x - p_j|, h)                                            [Xiao2017] eq. 1
+/// so that the iso-value has no units: a lattice of the given spacing has rho = 1.
+struct RaycastField {
+  RaycastOptions options;  ///< checked, every length resolved
+  ParticleGrid grid;
+  std::vector<float> mass;          ///< m_j by sorted index, padded like the grid's arrays
+  std::vector<float> entry_radius;  ///< m by sorted index: the sphere outside of which j makes no surface
+  std::vector<float> red, green, blue;  ///< linear, by sorted index, padded; empty without colours
+  std::vector<std::uint8_t> hidden;     ///< by cell: no ray sees its particles before others; may be empty
+  float scale = 0;  ///< spacing^3 W(0, h): what a unit mass adds to rho at its own place
+  float step = 0;   ///< m, of the march
+
+  bool has_colours() const { return !red.empty(); }
+  bool is_hidden(std::size_t cell) const { return !hidden.empty() && hidden[cell] != 0; }
+};
+
+/// Checks the options, sorts the particles and their colours; masses are one.
+/// @throws Error invalid_argument
+RaycastField make_field(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours);
+
+/// W(r, h) of the field's kernel, 1/m^3.
+float kernel_value(Kernel kernel, float r, float h);
+
+/// How the mass of a particle follows from rho at its place: 1 from `full_density` up, `lone_mass` at the
+/// density `lone_density` of a particle without neighbours, linear between them.
+struct MassRule {
+  float lone_density = 0;
+  float lone_mass = 1;
+  float full_density = 0;
+};
+/// lone_mass makes a lone particle's surface a sphere of its own volume, radius (3 / (4 pi))^(1/3) spacings.
+/// full_density is a little less than that in a sheet one particle thick, whose surface unit masses place
+/// where it should be, half a spacing from the particles.
+MassRule mass_rule(const RaycastOptions& options);
+inline float mass_at(const MassRule& rule, float density) {
+  const float thin = (rule.full_density - density) / (rule.full_density - rule.lone_density);
+  return 1.0f + (rule.lone_mass - 1.0f) * std::clamp(thin, 0.0f, 1.0f);
+}
+
+/// Radius of the sphere that a ray has to enter before it can meet the surface near a particle, m: one spacing
+/// at iso-values from 1/2 up, more below and where particles are packed closer than inside the water.
+inline float entry_radius_at(const RaycastOptions& options, float density) {
+  const float loose = std::clamp(1.0f + 2.0f * (0.5f - options.iso), 1.0f, 2.0f);
+  const float packed = 1.0f + std::clamp((density - 1.2f) / 1.8f, 0.0f, 1.0f);
+  return std::min(options.spacing * loose * packed, options.smoothing_length);
+}
+
+/// Fewer neighbours within the normal radius than this leave the gradient alone to tell the normal.
+constexpr int kFewestNeighboursForPca = 5;
+/// Below this ratio of the middle to the largest eigenvalue the neighbours form a line, which has no normal.
+constexpr float kLeastPcaSpread = 1e-3f;
+
+}  // namespace meniscus

@@ -1,0 +1,99 @@
+#include "surface/splat_tile.h"
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "surface/splat_tile.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace meniscus {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Tag = HWY_CAPPED(float, 16);
+using Vec = hn::Vec<Tag>;
+
+/// Calls visit(offset in the tile, middle, half, hits) for every vector of pixels that the sphere may cover:
+/// the ray runs through the sphere between the distances middle - half and middle + half where `hits`.
+template <class Visit>
+HWY_INLINE void for_each_chord(const TileRays& rays, const TileSphere& sphere, Visit visit) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const Vec cx = hn::Set(d, sphere.x), cy = hn::Set(d, sphere.y), cz = hn::Set(d, sphere.z);
+  const Vec radius2 = hn::Set(d, sphere.radius * sphere.radius);
+  const Vec zero = hn::Zero(d);
+  for (int y = sphere.y0; y <= sphere.y1; ++y) {
+    const Vec v = hn::Set(d, rays.v0 + static_cast<float>(y) * rays.dv);
+    for (int x = sphere.x0 - sphere.x0 % lanes; x <= sphere.x1; x += lanes) {
+      const int offset = y * kTileWidth + x;
+      const Vec u = hn::MulAdd(hn::Iota(d, static_cast<float>(x)), hn::Set(d, rays.du), hn::Set(d, rays.u0));
+      Vec middle, off_axis2;
+      if (rays.perspective) {
+        // The part of the centre across the ray is subtracted before it is squared: far away, the difference
+        // of two large squares would have no digits left.
+        const Vec dz = hn::Load(d, rays.inverse_length + offset);
+        const Vec dx = hn::Mul(u, dz), dy = hn::Mul(v, dz);
+        middle = hn::MulAdd(cx, dx, hn::MulAdd(cy, dy, hn::Mul(cz, dz)));
+        const Vec ox = hn::NegMulAdd(middle, dx, cx), oy = hn::NegMulAdd(middle, dy, cy), oz = hn::NegMulAdd(middle, dz, cz);
+        off_axis2 = hn::MulAdd(ox, ox, hn::MulAdd(oy, oy, hn::Mul(oz, oz)));
+      } else {
+        const Vec ox = hn::Sub(cx, u), oy = hn::Sub(cy, v);
+        middle = cz;
+        off_axis2 = hn::MulAdd(ox, ox, hn::Mul(oy, oy));
+      }
+      const Vec half2 = hn::Sub(radius2, off_axis2);
+      const auto hits = hn::Gt(half2, zero);
+      if (hn::AllFalse(d, hits)) continue;
+      visit(d, offset, middle, hn::Sqrt(hn::Max(half2, zero)), hits);
+    }
+  }
+}
+
+void splat_depth(const TileRays& rays, const TileSphere& sphere, float* HWY_RESTRICT entry, float* HWY_RESTRICT exit) {
+  for_each_chord(rays, sphere, [&](Tag d, int offset, Vec middle, Vec half, auto hits) {
+    const Vec far_end = hn::Add(middle, half);
+    hits = hn::And(hits, hn::Gt(far_end, hn::Zero(d)));
+    const Vec near_end = hn::Max(hn::Sub(middle, half), hn::Zero(d));
+    const Vec before = hn::Load(d, entry + offset), after = hn::Load(d, exit + offset);
+    hn::Store(hn::IfThenElse(hits, hn::Min(before, near_end), before), d, entry + offset);
+    hn::Store(hn::IfThenElse(hits, hn::Max(after, far_end), after), d, exit + offset);
+  });
+}
+
+void splat_chord(const TileRays& rays, const TileSphere& sphere, float* HWY_RESTRICT sum) {
+  for_each_chord(rays, sphere, [&](Tag d, int offset, Vec middle, Vec half, auto hits) {
+    const Vec near_end = hn::Max(hn::Sub(middle, half), hn::Zero(d));
+    const Vec chord = hn::Max(hn::Sub(hn::Add(middle, half), near_end), hn::Zero(d));
+    hn::Store(hn::Add(hn::Load(d, sum + offset), hn::IfThenElseZero(hits, chord)), d, sum + offset);
+  });
+}
+
+}  // namespace
+
+void SplatDepth(const TileRays& rays, const TileSphere& sphere, float* entry, float* exit) {
+  splat_depth(rays, sphere, entry, exit);
+}
+void SplatChord(const TileRays& rays, const TileSphere& sphere, float* sum) { splat_chord(rays, sphere, sum); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace meniscus
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace meniscus {
+
+HWY_EXPORT(SplatDepth);
+HWY_EXPORT(SplatChord);
+
+void splat_depth_into_tile(const TileRays& rays, const TileSphere& sphere, float* entry, float* exit) {
+  HWY_DYNAMIC_DISPATCH(SplatDepth)(rays, sphere, entry, exit);
+}
+
+void splat_chord_into_tile(const TileRays& rays, const TileSphere& sphere, float* sum) {
+  HWY_DYNAMIC_DISPATCH(SplatChord)(rays, sphere, sum);
+}
+
+}  // namespace meniscus
+#endif
