@@ -1,14 +1,17 @@
 # Tests of the project's form rather than of one stage: what includes what, headers that stand alone, formulas
-# that are GLSL too, and the installed package.
+# that are GLSL too, citations, and the installed package.
 find_program(MENISCUS_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
 find_program(MENISCUS_GLSLC glslc REQUIRED)
 set(generated_dir ${CMAKE_CURRENT_BINARY_DIR}/generated)
 
-# What includes what, and that nothing is downloaded; the check itself is checked on a made-up tree.
-add_test(NAME project.stages_include_only_what_they_may
-  COMMAND ${MENISCUS_PYTHON} -B ${CMAKE_SOURCE_DIR}/tools/check_stages.py ${CMAKE_SOURCE_DIR})
-add_test(NAME project.stage_check_finds_each_kind_of_fault
-  COMMAND ${MENISCUS_PYTHON} -B ${CMAKE_SOURCE_DIR}/tools/check_stages_test.py)
+# What includes what, and that nothing is downloaded; citation keys. Each check is itself checked on made-up trees.
+function(add_project_check name)
+  add_test(NAME project.${name} COMMAND ${MENISCUS_PYTHON} -B ${CMAKE_SOURCE_DIR}/tools/${name}.py ${CMAKE_SOURCE_DIR})
+  add_test(NAME project.${name}_finds_each_kind_of_fault
+    COMMAND ${MENISCUS_PYTHON} -B ${CMAKE_SOURCE_DIR}/tools/${name}_test.py)
+endfunction()
+add_project_check(check_stages)
+add_project_check(check_references)
 
 # Each public header compiles alone, with nothing but what meniscus::meniscus hands on: one .cpp a header, which
 # includes it twice. A header that does not stops the build.
