@@ -32,8 +32,8 @@ TEST_P(EachThreadCount, EveryIndexIsVisitedExactlyOnce) {
     for (const std::size_t grain : {1u, 7u, 1000u, 5000u}) {
       std::vector<std::atomic<int>> visits(count);
       parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-        EXPECT_LT(begin, end);
-        EXPECT_LE(end, count);
+        ASSERT_LT(begin, end);
+        ASSERT_LE(end, count);
         EXPECT_LE(end - begin, grain);
         for (std::size_t i = begin; i < end; ++i) ++visits[i];
       });
