@@ -25,7 +25,7 @@ struct ToneOptions {
 /// at 1. Both are non-decreasing: more of any channel never makes any channel darker. Grey stays grey.
 /// Negative values and NaN are black, infinity is white.
 vec3 tone_mapped(vec3 radiance, const ToneOptions& options);
-/// The sRGB transfer function, [0, 1] to [0, 1], and its inverse; arguments are clamped. [IEC61966-2-1]
+/// The sRGB transfer function, [0, 1] to [0, 1], and its inverse; arguments are clamped. (IEC 61966-2-1)
 float srgb_from_linear(float linear);
 float linear_from_srgb(float srgb);
 /// tone_mapped, then sRGB, then rounding to 8 bits with a fixed ordered dither against banding: less than half

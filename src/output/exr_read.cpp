@@ -5,6 +5,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <algorithm>
+#include <exception>
 
 #include "meniscus/output.h"
 #include "output/exr_attributes.h"
@@ -83,7 +84,9 @@ std::vector<std::pair<std::string, Image<float>>> read_exr(const std::string& pa
   use_exr_threads();
   try {
     return decoded(path, bytes);
-  } catch (const Iex::BaseExc& error) {
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {  // OpenEXR's own and those of the library below it
     throw malformed(path, std::string("the EXR file is broken: ") + error.what());
   }
 }

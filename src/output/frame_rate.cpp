@@ -13,7 +13,7 @@ FrameRate frame_rate(double frames_per_second) {
                 fmt::format("a film of {} frames per second cannot be made; give 0.01 to 1000", frames_per_second));
   for (const int whole : {24, 30, 48, 60, 120}) {
     const double television = whole * 1000.0 / 1001.0;
-    if (std::abs(frames_per_second - television) < 1e-4) return {whole * 1000, 1001};
+    if (std::abs(frames_per_second - television) < 2e-4) return {whole * 1000, 1001};
   }
   // Convergents of the continued fraction, until one is as good as a double can say.
   double rest = frames_per_second;

@@ -14,14 +14,20 @@ namespace {
 
 constexpr int kThreads = 4;
 
-/// All H.264 encoders that this FFmpeg has, the best first.
+bool takes_yuv420p(const AVCodec* codec) {
+  for (const AVPixelFormat* format = codec->pix_fmts; format && *format != AV_PIX_FMT_NONE; ++format)
+    if (*format == AV_PIX_FMT_YUV420P) return true;
+  return !codec->pix_fmts;
+}
+
+/// All H.264 encoders of this FFmpeg that can take pictures from memory, the best first.
 std::vector<const AVCodec*> encoders() {
   std::vector<const AVCodec*> found;
   for (const char* name : {"libx264", "libopenh264"})
     if (const AVCodec* codec = avcodec_find_encoder_by_name(name)) found.push_back(codec);
   void* position = nullptr;
   while (const AVCodec* codec = av_codec_iterate(&position))
-    if (codec->id == AV_CODEC_ID_H264 && av_codec_is_encoder(codec) &&
+    if (codec->id == AV_CODEC_ID_H264 && av_codec_is_encoder(codec) && takes_yuv420p(codec) &&
         std::find(found.begin(), found.end(), codec) == found.end())
       found.push_back(codec);
   return found;

@@ -27,15 +27,27 @@ Error failed(const std::string& path, int error) {
   return Error(ErrorCode::io_failed, detail);
 }
 
-/// FFmpeg and its encoders tell of every file; a program that has chosen a level itself keeps it.
+/// FFmpeg and its encoders talk to stderr about every file; what matters of it is in our errors. A program that
+/// has chosen a level itself keeps it.
 void silence_ffmpeg() {
-  if (av_log_get_level() == AV_LOG_INFO) av_log_set_level(AV_LOG_ERROR);
+  if (av_log_get_level() == AV_LOG_INFO) av_log_set_level(AV_LOG_FATAL);
 }
+
+constexpr int kLongestSide = 16384;  // px; what H.264 encoders take
 
 /// The checks that come before anything is made.
 const std::string& checked(const std::string& path, int width, int height, const VideoOptions& options) {
   if (width < 1 || height < 1)
     throw refused(path, fmt::format("a film of {} x {} pixels cannot be made", width, height));
+  if (width > kLongestSide || height > kLongestSide) {
+    ErrorDetail detail;
+    detail.problem = "H.264 cannot hold pictures of this size";
+    detail.expected = fmt::format("sides of at most {} pixels", kLongestSide);
+    detail.found = fmt::format("{} x {}", width, height);
+    detail.path = path;
+    detail.advice = "make the film smaller or write PNG frames";
+    throw Error(ErrorCode::unsupported, detail);
+  }
   if (options.quality_crf < 0 || options.quality_crf > 51)
     throw refused(path, fmt::format("the quality of a film must be in 0 .. 51, not {}", options.quality_crf));
   frame_rate(options.frames_per_second);

@@ -116,7 +116,7 @@ TEST(Exr, IsRefusedWhereverItIsCutOff) {
   const std::vector<ExrLayer> layers{{.vector = &radiance}};
   write_exr(scratch / "whole.exr", layers);
   const std::string whole = bytes_of(scratch / "whole.exr");
-  for (std::size_t length = 0; length < whole.size(); length += length < 600 ? 1 : 7) {
+  for (std::size_t length = 0; length < whole.size(); length += length < 400 ? 1 : 29) {
     write_bytes(scratch / "cut.exr", whole.substr(0, length));
     refusal(ErrorCode::malformed_file, scratch / "cut.exr", [&] { read_exr(scratch / "cut.exr"); });
   }
@@ -131,7 +131,7 @@ TEST(Exr, WithABrokenHeaderIsRefusedOrRead) {
   const std::string whole = bytes_of(scratch / "whole.exr");
   int refused = 0;
   for (std::size_t at = 0; at < std::min<std::size_t>(whole.size(), 400); ++at)
-    for (const int flip : {0x01, 0x80, 0xFF}) {
+    for (const int flip : {0x01, 0x80}) {
       std::string broken = whole;
       broken[at] = static_cast<char>(broken[at] ^ flip);
       write_bytes(scratch / "broken.exr", broken);
@@ -142,7 +142,7 @@ TEST(Exr, WithABrokenHeaderIsRefusedOrRead) {
         ++refused;
       }
     }
-  EXPECT_GT(refused, 300);
+  EXPECT_GT(refused, 200);
   EXPECT_LT(peak_rss_bytes(), std::uint64_t{1} << 30);
 }
 
