@@ -19,7 +19,8 @@ ParticleGrid::ParticleGrid(const Particles& particles, float cell_size)
   if (!(cell_size > 0.0f) || !std::isfinite(per_cell_))
     throw Error(ErrorCode::invalid_argument, fmt::format("cells of {} m cannot sort particles", cell_size));
   if (count_ > 0xffffffffu)
-    throw Error(ErrorCode::limit_exceeded, fmt::format("{} particles in one frame; at most 2^32 - 1 can be sorted", count_));
+    throw Error(ErrorCode::limit_exceeded,
+                fmt::format("{} particles in one frame; at most 2^32 - 1 can be sorted", count_));
   if (count_ > 0) {
     std::vector<Bounds> partial((count_ + kGrain - 1) / kGrain);
     parallel_for(count_, kGrain, [&](std::size_t begin, std::size_t end) {
@@ -32,8 +33,14 @@ ParticleGrid::ParticleGrid(const Particles& particles, float cell_size)
     const float longest = std::max({extent.x, extent.y, extent.z});
     if (!(longest * per_cell_ < kMostCellsAlongAxis))
       throw Error(ErrorCode::invalid_argument,
-                  ErrorDetail{fmt::format("the particles spread over {:.3g} m, too wide for cells of {:.3g} m", longest, cell_size),
-                              {}, {}, {}, {}, {}, "set a larger particle spacing, or leave out the particles that have flown away"});
+                  ErrorDetail{fmt::format("the particles spread over {:.3g} m, too wide for cells of {:.3g} m", longest,
+                                          cell_size),
+                              {},
+                              {},
+                              {},
+                              {},
+                              {},
+                              "set a larger particle spacing, or leave out the particles that have flown away"});
     const auto along = [&](float size) { return static_cast<int>(size * per_cell_) + 1; };
     nx_ = along(extent.x);
     ny_ = along(extent.y);
@@ -59,7 +66,8 @@ void ParticleGrid::sort_dense(const Particles& particles) {
   // Counting sort by blocks of particles, each with counters of its own. It is stable, so the outcome does not
   // depend on the number of blocks.
   const std::size_t cells = cell_count();
-  const std::size_t blocks = std::clamp<std::size_t>(std::min(static_cast<std::size_t>(thread_count()), 4 * count_ / (cells + 1)), 1, 8);
+  const std::size_t blocks =
+      std::clamp<std::size_t>(std::min(static_cast<std::size_t>(thread_count()), 4 * count_ / (cells + 1)), 1, 8);
   const std::size_t per_block = (count_ + blocks - 1) / blocks;
   std::vector<std::uint32_t> key(count_);
   std::vector<std::vector<std::uint32_t>> counters(blocks);

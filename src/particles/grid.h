@@ -69,9 +69,12 @@ class ParticleGrid {
     const auto at_most = [](float cell, int n) {
       return cell < 0.0f ? -1 : static_cast<int>(std::min(cell, static_cast<float>(n - 1)));
     };
-    return {at_least(std::min(first(low.x, bounds_.low.x), 2e9f)), at_least(std::min(first(low.y, bounds_.low.y), 2e9f)),
-            at_least(std::min(first(low.z, bounds_.low.z), 2e9f)), at_most(first(high.x, bounds_.low.x), nx_),
-            at_most(first(high.y, bounds_.low.y), ny_), at_most(first(high.z, bounds_.low.z), nz_)};
+    return {at_least(std::min(first(low.x, bounds_.low.x), 2e9f)),
+            at_least(std::min(first(low.y, bounds_.low.y), 2e9f)),
+            at_least(std::min(first(low.z, bounds_.low.z), 2e9f)),
+            at_most(first(high.x, bounds_.low.x), nx_),
+            at_most(first(high.y, bounds_.low.y), ny_),
+            at_most(first(high.z, bounds_.low.z), nz_)};
   }
 
   /// Calls visit(begin, end) for the runs of sorted particles whose cells touch the box.
@@ -101,9 +104,9 @@ class ParticleGrid {
   Bounds bounds_;
   std::vector<float> x_, y_, z_;
   std::vector<std::uint32_t> index_;
-  std::vector<std::uint32_t> start_;          ///< dense: first particle of each cell, and one more
-  std::vector<std::uint64_t> sparse_keys_;    ///< sparse: cells that hold particles, ascending
-  std::vector<std::uint32_t> sparse_start_;   ///< first particle of each, and one more
+  std::vector<std::uint32_t> start_;         ///< dense: first particle of each cell, and one more
+  std::vector<std::uint64_t> sparse_keys_;   ///< sparse: cells that hold particles, ascending
+  std::vector<std::uint32_t> sparse_start_;  ///< first particle of each, and one more
 };
 
 }  // namespace meniscus

@@ -24,6 +24,15 @@ void erode(std::vector<std::uint8_t>& flags, std::size_t count, std::size_t stri
   });
 }
 
+/// Keeps the flags of cells whose 26 neighbours are flagged, too.
+void erode_by_one(const ParticleGrid& grid, std::vector<std::uint8_t>& flags) {
+  const auto nx = static_cast<std::size_t>(grid.cells_x()), ny = static_cast<std::size_t>(grid.cells_y()),
+             nz = static_cast<std::size_t>(grid.cells_z());
+  erode(flags, flags.size(), 1, nx);
+  erode(flags, flags.size(), nx, ny);
+  erode(flags, flags.size(), nx * ny, nz);
+}
+
 }  // namespace
 
 void SphereSet::add(vec3 centre, float r) {
@@ -41,8 +50,7 @@ void find_hidden_cells(RaycastField& field) {
   const auto well_filled =
       static_cast<std::size_t>(std::max(1.0f, kWellFilled * cell_in_spacings * cell_in_spacings * cell_in_spacings));
   const std::size_t cells = grid.cell_count();
-  const auto nx = static_cast<std::size_t>(grid.cells_x()), ny = static_cast<std::size_t>(grid.cells_y()),
-             nz = static_cast<std::size_t>(grid.cells_z());
+  const auto nz = static_cast<std::size_t>(grid.cells_z());
   field.hidden.assign(cells, 0);
   parallel_for(nz, 1, [&](std::size_t cz, std::size_t) {
     for (int cy = 0; cy < grid.cells_y(); ++cy)
@@ -51,9 +59,7 @@ void find_hidden_cells(RaycastField& field) {
         field.hidden[grid.cell_index(cx, cy, static_cast<int>(cz))] = run.end - run.begin >= well_filled;
       }
   });
-  erode(field.hidden, cells, 1, nx);
-  erode(field.hidden, cells, nx, ny);
-  erode(field.hidden, cells, nx * ny, nz);
+  erode_by_one(grid, field.hidden);
 }
 
 SphereSet entry_spheres(const RaycastField& field) {
@@ -67,29 +73,31 @@ SphereSet entry_spheres(const RaycastField& field) {
     spheres.radius = field.entry_radius;
     return spheres;
   }
+  // A hidden cell's sphere holds the cell alone: the spheres of particles that are left out reach no farther than
+  // into the hidden cells around theirs, because no radius is larger than a cell.
   const float cell = grid.cell_size();
-  const float around_cell = 0.5f * std::sqrt(3.0f) * cell + entry_radius_at(field.options, 1.0f);
-  const auto hidden = [&](int x, int y, int z) { return field.hidden[grid.cell_index(x, y, z)] != 0; };
+  const float around_cell = 0.5f * std::sqrt(3.0f) * cell;
+  std::vector<std::uint8_t> midst(field.hidden);
+  erode_by_one(grid, midst);
   std::vector<SphereSet> layers(static_cast<std::size_t>(grid.cells_z()));
   parallel_for(layers.size(), 1, [&](std::size_t layer, std::size_t) {
     const int z = static_cast<int>(layer);
     SphereSet& mine = layers[layer];
     for (int y = 0; y < grid.cells_y(); ++y)
       for (int x = 0; x < grid.cells_x(); ++x) {
-        if (!hidden(x, y, z)) {
-          const ParticleGrid::Run run = grid.run(x, x, y, z);
-          for (std::size_t i = run.begin; i < run.end; ++i) mine.add(grid.position(i), field.entry_radius[i]);
-        } else if (!(hidden(x - 1, y, z) && hidden(x + 1, y, z) && hidden(x, y - 1, z) && hidden(x, y + 1, z) &&
-                     hidden(x, y, z - 1) && hidden(x, y, z + 1))) {  // hidden cells never lie at the grid's border
-          mine.add(grid.bounds().low + cell * (vec3{x, y, z} + vec3{0.5f}), around_cell);
-        }
+        const std::size_t at = grid.cell_index(x, y, z);
+        if (midst[at]) continue;
+        const ParticleGrid::Run run = grid.run(x, x, y, z);
+        for (std::size_t i = run.begin; i < run.end; ++i) mine.add(grid.position(i), field.entry_radius[i]);
+        if (field.hidden[at]) mine.add(grid.bounds().low + cell * (vec3{x, y, z} + vec3{0.5f}), around_cell);
       }
   });
   std::size_t total = 0;
   for (const SphereSet& layer : layers) total += layer.size();
   for (auto member : {&SphereSet::x, &SphereSet::y, &SphereSet::z, &SphereSet::radius}) {
     (spheres.*member).reserve(total);
-    for (const SphereSet& layer : layers) (spheres.*member).insert((spheres.*member).end(), (layer.*member).begin(), (layer.*member).end());
+    for (const SphereSet& layer : layers)
+      (spheres.*member).insert((spheres.*member).end(), (layer.*member).begin(), (layer.*member).end());
   }
   return spheres;
 }

@@ -16,9 +16,10 @@ struct SphereSet {
 /// empty where nothing is hidden).
 void find_hidden_cells(RaycastField& field);
 
-/// The spheres that a ray has to enter before it can meet the surface: those of all particles that are not
-/// hidden, and one around each hidden cell that touches one that is not. A ray that slips between the particles
-/// in front still meets the second kind, so that no pixel is lost, whatever the particles look like.
+/// The spheres that a ray has to enter before it can meet the surface: those of all particles that are not in the
+/// midst of hidden cells, and one around each hidden cell that touches one that is not hidden. A ray that slips
+/// between the particles in front has to run through a cell of the second kind before it can meet a particle that
+/// was left out, so that no pixel is lost, whatever the particles look like.
 SphereSet entry_spheres(const RaycastField& field);
 
 }  // namespace meniscus

@@ -1,7 +1,7 @@
-#include <algorithm>
-#include <cctype>
 #include <fmt/format.h>
 #include <hwy/highway.h>
+#include <algorithm>
+#include <cctype>
 
 #include "meniscus/surface.h"
 
@@ -10,7 +10,8 @@ namespace {
 
 std::string lower_case(const char* name) {
   std::string text(name);
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -43,8 +44,9 @@ void use_instruction_set(std::string_view name) {
     if (found == known.end()) {
       std::string names = "best";
       for (const auto& entry : known) names += ", " + entry.first;
-      throw Error(ErrorCode::invalid_argument,
-                  ErrorDetail{fmt::format("this processor has no instruction set '{}'", name), names, {}, {}, {}, {}, {}});
+      throw Error(
+          ErrorCode::invalid_argument,
+          ErrorDetail{fmt::format("this processor has no instruction set '{}'", name), names, {}, {}, {}, {}, {}});
     }
     hwy::SetSupportedTargetsForTest(static_cast<decltype(hwy::SupportedTargets())>(found->second));
   }

@@ -65,7 +65,8 @@ void FilterNormalRow(const FilterRow& row, float* out_x, float* out_y, float* ou
   const Vec one = hn::Set(d, 1.0f);
   for (int x = 0; x < row.width; x += lanes) {
     const std::size_t centre = row.start + static_cast<std::size_t>(x);
-    const Vec nx = hn::LoadU(d, &planes.nx[centre]), ny = hn::LoadU(d, &planes.ny[centre]), nz = hn::LoadU(d, &planes.nz[centre]);
+    const Vec nx = hn::LoadU(d, &planes.nx[centre]), ny = hn::LoadU(d, &planes.ny[centre]),
+              nz = hn::LoadU(d, &planes.nz[centre]);
     Vec sum_x = nx, sum_y = ny, sum_z = nz;
     if (hn::AllTrue(d, hn::Eq(hn::MulAdd(nx, nx, hn::MulAdd(ny, ny, hn::Mul(nz, nz))), hn::Zero(d)))) {
       hn::StoreU(sum_x, d, out_x + x);
@@ -73,13 +74,15 @@ void FilterNormalRow(const FilterRow& row, float* out_x, float* out_y, float* ou
       hn::StoreU(sum_z, d, out_z + x);
       continue;
     }
-    const Vec px = hn::LoadU(d, &planes.px[centre]), py = hn::LoadU(d, &planes.py[centre]), pz = hn::LoadU(d, &planes.pz[centre]);
+    const Vec px = hn::LoadU(d, &planes.px[centre]), py = hn::LoadU(d, &planes.py[centre]),
+              pz = hn::LoadU(d, &planes.pz[centre]);
     const float* spatial = row.spatial;
     for (int dy = -row.radius; dy <= row.radius; ++dy) {
       std::size_t tap = centre + static_cast<std::size_t>(dy) * planes.pitch - static_cast<std::size_t>(row.radius);
       for (int dx = -row.radius; dx <= row.radius; ++dx, ++tap, ++spatial) {
         if (dx == 0 && dy == 0) continue;
-        const Vec qx = hn::LoadU(d, &planes.nx[tap]), qy = hn::LoadU(d, &planes.ny[tap]), qz = hn::LoadU(d, &planes.nz[tap]);
+        const Vec qx = hn::LoadU(d, &planes.nx[tap]), qy = hn::LoadU(d, &planes.ny[tap]),
+                  qz = hn::LoadU(d, &planes.nz[tap]);
         const Vec off_plane = hn::MulAdd(nx, hn::Sub(hn::LoadU(d, &planes.px[tap]), px),
                                          hn::MulAdd(ny, hn::Sub(hn::LoadU(d, &planes.py[tap]), py),
                                                     hn::Mul(nz, hn::Sub(hn::LoadU(d, &planes.pz[tap]), pz))));
@@ -141,14 +144,16 @@ Image<vec3> filtered_normals(const View& view, const Image<float>& depth, const 
   const float sigma = 0.5f * static_cast<float>(radius);
   std::vector<float> spatial;
   for (int dy = -radius; dy <= radius; ++dy)
-    for (int dx = -radius; dx <= radius; ++dx) spatial.push_back(-0.5f * static_cast<float>(dx * dx + dy * dy) / (sigma * sigma));
+    for (int dx = -radius; dx <= radius; ++dx)
+      spatial.push_back(-0.5f * static_cast<float>(dx * dx + dy * dy) / (sigma * sigma));
   Image<vec3> filtered(width, height, vec3{0});
   parallel_for(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
     const std::size_t padded = (static_cast<std::size_t>(width) + kVector - 1) / kVector * kVector;
     std::vector<float> x_row(padded), y_row(padded), z_row(padded);
     for (std::size_t y = begin; y < end; ++y) {
       HWY_DYNAMIC_DISPATCH(FilterNormalRow)
-      (FilterRow{&planes, row_start(y), width, radius, tolerance, spatial.data()}, x_row.data(), y_row.data(), z_row.data());
+      (FilterRow{&planes, row_start(y), width, radius, tolerance, spatial.data()}, x_row.data(), y_row.data(),
+       z_row.data());
       for (int x = 0; x < width; ++x) {
         const auto i = static_cast<std::size_t>(x);
         if (depth(x, static_cast<int>(y)) < std::numeric_limits<float>::infinity())

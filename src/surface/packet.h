@@ -58,8 +58,8 @@ void march_packet(const RaycastField& field, const PacketRays& rays, PacketMask 
 
 /// Normals at the points of `mask` ([Xiao2017] 3.3), unit, out of the water; `towards` is taken where the
 /// neighbours tell nothing. Points should lie near each other.
-void normals_packet(const RaycastField& field, const PacketPoints& points, PacketMask mask,
-                    const PacketPoints& towards, PacketList& list, PacketPoints& normals);
+void normals_packet(const RaycastField& field, const PacketPoints& points, PacketMask mask, const PacketPoints& towards,
+                    PacketList& list, PacketPoints& normals);
 
 /// Density at the points of `mask`, with unit masses when `unit_mass`.
 void density_packet(const RaycastField& field, const PacketPoints& points, PacketMask mask, bool unit_mass,

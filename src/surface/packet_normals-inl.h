@@ -23,7 +23,9 @@ struct Vec3V {
 
 HWY_INLINE Vec dot(Vec3V a, Vec3V b) { return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z))); }
 
-HWY_INLINE Vec3V scaled(Vec3V a, Vec factor) { return {hn::Mul(a.x, factor), hn::Mul(a.y, factor), hn::Mul(a.z, factor)}; }
+HWY_INLINE Vec3V scaled(Vec3V a, Vec factor) {
+  return {hn::Mul(a.x, factor), hn::Mul(a.y, factor), hn::Mul(a.z, factor)};
+}
 
 /// a + factor b
 HWY_INLINE Vec3V combined(Vec3V a, Vec factor, Vec3V b) {
@@ -71,7 +73,8 @@ HWY_NOINLINE void normals_from_list(const RaycastField& field, const PacketList&
     Vec weights = zero, neighbours = zero, xx = zero, yy = zero, zz = zero, xy = zero, xz = zero, yz = zero;
     for (std::size_t j = 0; j < list.count; ++j) {
       const Vec3V off = scaled({hn::Sub(hn::Set(d, list.x.data()[j]), px), hn::Sub(hn::Set(d, list.y.data()[j]), py),
-                                hn::Sub(hn::Set(d, list.z.data()[j]), pz)}, per_radius);
+                                hn::Sub(hn::Set(d, list.z.data()[j]), pz)},
+                               per_radius);
       const Vec q2 = hn::Max(dot(off, off), hn::Set(d, 1e-12f));
       const Vec per_q = reciprocal_root(q2);
       const Vec q = hn::Mul(q2, per_q);
@@ -116,8 +119,10 @@ HWY_NOINLINE void normals_from_list(const RaycastField& field, const PacketList&
       const Vec middle = hn::Sub(hn::Add(hn::Add(xx, yy), zz), hn::Add(least, largest));
       Vec3V pca = vz;
       const auto x_least = hn::Eq(xx, least), y_least = hn::Eq(yy, least);
-      pca = {hn::IfThenElse(y_least, vy.x, pca.x), hn::IfThenElse(y_least, vy.y, pca.y), hn::IfThenElse(y_least, vy.z, pca.z)};
-      pca = {hn::IfThenElse(x_least, vx.x, pca.x), hn::IfThenElse(x_least, vx.y, pca.y), hn::IfThenElse(x_least, vx.z, pca.z)};
+      pca = {hn::IfThenElse(y_least, vy.x, pca.x), hn::IfThenElse(y_least, vy.y, pca.y),
+             hn::IfThenElse(y_least, vy.z, pca.z)};
+      pca = {hn::IfThenElse(x_least, vx.x, pca.x), hn::IfThenElse(x_least, vx.y, pca.y),
+             hn::IfThenElse(x_least, vx.z, pca.z)};
       // The eigenvector's sign is open: take the side of the gradient.
       Vec agreement = dot(pca, normal);
       const Vec sign = hn::IfThenElse(hn::Lt(agreement, zero), hn::Neg(one), one);
@@ -125,7 +130,8 @@ HWY_NOINLINE void normals_from_list(const RaycastField& field, const PacketList&
       // Eq. 5 and 6; few or collinear neighbours have no plane.
       Vec w = one;
       if (options.normals == NormalMethod::blend)
-        w = hn::Min(one, hn::Exp(d, hn::Mul(hn::Set(d, options.blend_sharpness), hn::Sub(agreement, hn::Set(d, options.blend_agreement)))));
+        w = hn::Min(one, hn::Exp(d, hn::Mul(hn::Set(d, options.blend_sharpness),
+                                            hn::Sub(agreement, hn::Set(d, options.blend_agreement)))));
       const auto planar = hn::And(hn::Ge(neighbours, hn::Set(d, static_cast<float>(kFewestNeighboursForPca))),
                                   hn::Gt(middle, hn::Mul(hn::Set(d, kLeastPcaSpread), largest)));
       w = hn::IfThenElseZero(planar, w);

@@ -42,8 +42,9 @@ class March {
       const float last = first + kStretch * field_.options.spacing;
       PacketMask group = 0;
       for_each_lane(active_, [&](int l) { group |= at_[l] < last ? 1u << l : 0u; });
-      gather_around(group, [&](int l) { return (fresh_ >> l) & 1u ? at_[l] : at_[l] - field_.step; },
-                    [&](int l) { return std::min(last, exit_[l]); });
+      gather_around(
+          group, [&](int l) { return (fresh_ >> l) & 1u ? at_[l] : at_[l] - field_.step; },
+          [&](int l) { return std::min(last, exit_[l]); });
       if (list_.count == 0 && sign_ > 0)
         skip(group, last);
       else
@@ -66,7 +67,8 @@ class March {
     vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
     for_each_lane(lanes, [&](int l) {
       for (const float t : {from(l), to(l)}) {
-        const float x = rays_.ox[l] + t * rays_.dx[l], y = rays_.oy[l] + t * rays_.dy[l], z = rays_.oz[l] + t * rays_.dz[l];
+        const float x = rays_.ox[l] + t * rays_.dx[l], y = rays_.oy[l] + t * rays_.dy[l],
+                    z = rays_.oz[l] + t * rays_.dz[l];
         low = {std::min(low.x, x), std::min(low.y, y), std::min(low.z, z)};
         high = {std::max(high.x, x), std::max(high.y, y), std::max(high.z, z)};
       }
@@ -163,8 +165,9 @@ class March {
       for_each_lane(started_inside_,
                     [&](int l) { group |= entry_[l] < first + field_.options.smoothing_length ? 1u << l : 0u; });
       started_inside_ &= ~group;
-      gather_around(group, [&](int l) { return std::max(entry_[l] - static_cast<float>(steps) * field_.step, 0.0f); },
-                    [&](int l) { return entry_[l]; });
+      gather_around(
+          group, [&](int l) { return std::max(entry_[l] - static_cast<float>(steps) * field_.step, 0.0f); },
+          [&](int l) { return entry_[l]; });
       std::copy_n(entry_, kPacket, t);
       values_at(t, high_value_);
       PacketMask bracketed = 0;
@@ -251,10 +254,10 @@ void NormalsPacket(const RaycastField& field, const PacketPoints& points, Packet
                    });
 }
 
-void DensityPacket(const RaycastField& field, const PacketPoints& points, PacketMask mask, bool unit_mass, PacketList& list,
-                   float* density) {
-  for_each_cluster(field, points, mask, 2.0f * field.options.smoothing_length, field.options.smoothing_length, false, list,
-                   [&](PacketMask group) {
+void DensityPacket(const RaycastField& field, const PacketPoints& points, PacketMask mask, bool unit_mass,
+                   PacketList& list, float* density) {
+  for_each_cluster(field, points, mask, 2.0f * field.options.smoothing_length, field.options.smoothing_length, false,
+                   list, [&](PacketMask group) {
                      if (unit_mass) std::fill_n(list.mass.data(), list.count, 1.0f);
                      alignas(64) float found[kPacket];
                      density_at_points(field, list, points, found);
@@ -295,8 +298,8 @@ void march_packet(const RaycastField& field, const PacketRays& rays, PacketMask 
   HWY_DYNAMIC_DISPATCH(MarchPacket)(field, rays, mask, entry, exit, from_inside, list, depth);
 }
 
-void normals_packet(const RaycastField& field, const PacketPoints& points, PacketMask mask,
-                    const PacketPoints& towards, PacketList& list, PacketPoints& normals) {
+void normals_packet(const RaycastField& field, const PacketPoints& points, PacketMask mask, const PacketPoints& towards,
+                    PacketList& list, PacketPoints& normals) {
   HWY_DYNAMIC_DISPATCH(NormalsPacket)(field, points, mask, towards, list, normals);
 }
 

@@ -29,14 +29,17 @@ HWY_INLINE Vec reciprocal_root(Vec v) {
 }
 
 /// Fills the list with the particles nearer than `radius` to the box, in their sorted order.
-HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, float radius, bool colours, PacketList& list) {
+HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, float radius, bool colours,
+                              PacketList& list) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
   const ParticleGrid& grid = field.grid;
   const Vec low_x = hn::Set(d, low.x), low_y = hn::Set(d, low.y), low_z = hn::Set(d, low.z);
   const Vec high_x = hn::Set(d, high.x), high_y = hn::Set(d, high.y), high_z = hn::Set(d, high.z);
   const Vec radius2 = hn::Set(d, radius * radius), zero = hn::Zero(d);
-  const auto outside = [&](Vec v, Vec from, Vec to) { return hn::Max(hn::Max(hn::Sub(from, v), hn::Sub(v, to)), zero); };
+  const auto outside = [&](Vec v, Vec from, Vec to) {
+    return hn::Max(hn::Max(hn::Sub(from, v), hn::Sub(v, to)), zero);
+  };
   list.count = 0;
   grid.for_each_run(low - radius, high + radius, [&](std::size_t begin, std::size_t end) {
     list.reserve(list.count + (end - begin) + 2 * kPacket, colours);
@@ -103,7 +106,8 @@ HWY_INLINE void sum_density(const RaycastField& field, const PacketList& list, P
     position(l, px, py, pz);
     Vec sum = hn::Zero(d);
     for (std::size_t j = 0; j < list.count; ++j) {
-      const Vec x = hn::Sub(px, hn::Set(d, lx[j])), y = hn::Sub(py, hn::Set(d, ly[j])), z = hn::Sub(pz, hn::Set(d, lz[j]));
+      const Vec x = hn::Sub(px, hn::Set(d, lx[j])), y = hn::Sub(py, hn::Set(d, ly[j])),
+                z = hn::Sub(pz, hn::Set(d, lz[j]));
       const Vec r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
       sum = hn::MulAdd(Shape::at(r2, per_h), hn::Set(d, lm[j]), sum);
     }
@@ -112,11 +116,15 @@ HWY_INLINE void sum_density(const RaycastField& field, const PacketList& list, P
 }
 
 template <class Position>
-HWY_INLINE void sum_density_by_kernel(const RaycastField& field, const PacketList& list, Position position, float* rho) {
+HWY_INLINE void sum_density_by_kernel(const RaycastField& field, const PacketList& list, Position position,
+                                      float* rho) {
   switch (field.options.kernel) {
-    case Kernel::cubic_spline: return sum_density<CubicSplineShape>(field, list, position, rho);
-    case Kernel::poly6: return sum_density<Poly6Shape>(field, list, position, rho);
-    case Kernel::wyvill: return sum_density<WyvillShape>(field, list, position, rho);
+    case Kernel::cubic_spline:
+      return sum_density<CubicSplineShape>(field, list, position, rho);
+    case Kernel::poly6:
+      return sum_density<Poly6Shape>(field, list, position, rho);
+    case Kernel::wyvill:
+      return sum_density<WyvillShape>(field, list, position, rho);
   }
 }
 
@@ -134,7 +142,8 @@ HWY_NOINLINE void density_along_rays(const RaycastField& field, const PacketList
       rho);
 }
 
-HWY_NOINLINE void density_at_points(const RaycastField& field, const PacketList& list, const PacketPoints& points, float* rho) {
+HWY_NOINLINE void density_at_points(const RaycastField& field, const PacketList& list, const PacketPoints& points,
+                                    float* rho) {
   const Tag d;
   sum_density_by_kernel(
       field, list,

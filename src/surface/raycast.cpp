@@ -65,7 +65,8 @@ void for_each_block(const View& view, std::span<const vec2> points, Visit visit)
         const int x = x0 + l % kSide, y = y0 + l / kSide;
         if (x >= view.width || y >= view.height) continue;
         block.points[l] = {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
-        block.targets[l] = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+        block.targets[l] =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
         block.mask |= 1u << l;
       }
       visit(block);
@@ -89,7 +90,8 @@ PacketPoints points_of(vec3 p) {
 
 class RaycastSurface final : public Surface {
  public:
-  RaycastSurface(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours, StageTimes* times)
+  RaycastSurface(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours,
+                 StageTimes* times)
       : field_([&] {
           StageTimer timer(times, "sort");
           return make_field(particles, options, colours);
@@ -141,8 +143,8 @@ class RaycastSurface final : public Surface {
     const float s = field_.options.spacing, r = thickness_radius_;
     const float weight = s * s * s / (4.0f / 3.0f * 3.14159265f * r * r * r);
     const int stride = thickness_stride(view);
-    const Image<float> coarse = splat_chords(view, {{grid.x(), grid.size()}, {grid.y(), grid.size()}, {grid.z(), grid.size()}, {&r, 1}},
-                                             weight, stride);
+    const Image<float> coarse = splat_chords(
+        view, {{grid.x(), grid.size()}, {grid.y(), grid.size()}, {grid.z(), grid.size()}, {&r, 1}}, weight, stride);
     return enlarged(coarse, stride, view, points);
   }
 
@@ -157,7 +159,8 @@ class RaycastSurface final : public Surface {
     const float per_cell = 1.0f / grid.cell_size();
     const auto cell_of = [&](std::size_t i) {
       const vec3 at = (grid.position(i) - grid.bounds().low) * per_cell;
-      return grid.cell_index(std::min(static_cast<int>(at.x), grid.cells_x() - 1), std::min(static_cast<int>(at.y), grid.cells_y() - 1),
+      return grid.cell_index(std::min(static_cast<int>(at.x), grid.cells_x() - 1),
+                             std::min(static_cast<int>(at.y), grid.cells_y() - 1),
                              std::min(static_cast<int>(at.z), grid.cells_z() - 1));
     };
     parallel_for(grid.size(), kMassGrain, [&](std::size_t begin, std::size_t end) {
@@ -212,7 +215,8 @@ class RaycastSurface final : public Surface {
     float farthest = 0;
     for (const float x : {box.low.x, box.high.x})
       for (const float y : {box.low.y, box.high.y})
-        for (const float z : {box.low.z, box.high.z}) farthest = std::max(farthest, glm::length(vec3{x, y, z} - view.eye));
+        for (const float z : {box.low.z, box.high.z})
+          farthest = std::max(farthest, glm::length(vec3{x, y, z} - view.eye));
     buffers.entry = Image<float>(view.width, view.height, 0.0f);
     buffers.exit = Image<float>(view.width, view.height, farthest);
     return buffers;
@@ -257,7 +261,8 @@ class RaycastSurface final : public Surface {
     }
     if (!points.empty() || field_.options.filter_radius == 0) return;
     StageTimer timer(times, "filter");
-    buffers.normal = filtered_normals(view, buffers.depth, buffers.normal, field_.options.filter_radius, filter_tolerance());
+    buffers.normal =
+        filtered_normals(view, buffers.depth, buffers.normal, field_.options.filter_radius, filter_tolerance());
   }
 
   float filter_tolerance() const { return 0.5f * field_.options.spacing; }
@@ -334,7 +339,8 @@ class RaycastSurface final : public Surface {
     const int x0 = static_cast<int>(u), y0 = static_cast<int>(v);
     const int x1 = std::min(x0 + 1, coarse.width() - 1), y1 = std::min(y0 + 1, coarse.height() - 1);
     const float fu = u - static_cast<float>(x0), fv = v - static_cast<float>(y0);
-    return (1 - fv) * ((1 - fu) * coarse(x0, y0) + fu * coarse(x1, y0)) + fv * ((1 - fu) * coarse(x0, y1) + fu * coarse(x1, y1));
+    return (1 - fv) * ((1 - fu) * coarse(x0, y0) + fu * coarse(x1, y0)) +
+           fv * ((1 - fu) * coarse(x0, y1) + fu * coarse(x1, y1));
   }
 
   static Image<float> sampled(const Image<float>& picture, std::span<const vec2> points) {
@@ -354,7 +360,8 @@ class RaycastSurface final : public Surface {
     parallel_for(static_cast<std::size_t>(view.height), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end; ++y)
         for (int x = 0; x < view.width; ++x)
-          full(x, static_cast<int>(y)) = between(coarse, stride, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+          full(x, static_cast<int>(y)) =
+              between(coarse, stride, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
     });
     return full;
   }

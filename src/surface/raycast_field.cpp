@@ -9,16 +9,18 @@ namespace {
 
 void require(bool holds, std::string_view name, double value, std::string_view range) {
   if (!holds)
-    throw Error(ErrorCode::invalid_argument,
-                ErrorDetail{fmt::format("{} is out of range", name), std::string(range), fmt::format("{}", value), {}, {}, {}, {}});
+    throw Error(
+        ErrorCode::invalid_argument,
+        ErrorDetail{
+            fmt::format("{} is out of range", name), std::string(range), fmt::format("{}", value), {}, {}, {}, {}});
 }
 
 RaycastOptions resolved(RaycastOptions options) {
   require(options.spacing > 0 && std::isfinite(options.spacing), "particle spacing", options.spacing, "more than 0 m");
   if (options.smoothing_length == 0) options.smoothing_length = 2.0f * options.spacing;
   if (options.normal_radius == 0) options.normal_radius = 3.0f * options.spacing;
-  require(options.smoothing_length >= options.spacing && options.smoothing_length <= 20 * options.spacing, "smoothing length",
-          options.smoothing_length, fmt::format("1 to 20 spacings of {} m", options.spacing));
+  require(options.smoothing_length >= options.spacing && options.smoothing_length <= 20 * options.spacing,
+          "smoothing length", options.smoothing_length, fmt::format("1 to 20 spacings of {} m", options.spacing));
   require(options.normal_radius >= options.spacing && options.normal_radius <= 20 * options.spacing, "normal radius",
           options.normal_radius, fmt::format("1 to 20 spacings of {} m", options.spacing));
   require(options.iso > 0 && options.iso < 1, "iso-value", options.iso, "more than 0 and less than 1");
@@ -26,31 +28,37 @@ RaycastOptions resolved(RaycastOptions options) {
   require(options.refinement_steps >= 0 && options.refinement_steps <= 32, "number of refinement steps",
           options.refinement_steps, "0 to 32");
   require(options.blend_sharpness >= 0, "blend sharpness", options.blend_sharpness, "0 or more");
-  require(options.blend_agreement >= 0 && options.blend_agreement <= 1, "blend agreement", options.blend_agreement, "0 to 1");
-  require(options.filter_radius >= 0 && options.filter_radius <= 32, "filter radius", options.filter_radius, "0 to 32 px");
+  require(options.blend_agreement >= 0 && options.blend_agreement <= 1, "blend agreement", options.blend_agreement,
+          "0 to 1");
+  require(options.filter_radius >= 0 && options.filter_radius <= 32, "filter radius", options.filter_radius,
+          "0 to 32 px");
   return options;
 }
 
 template <class Value>
-Value named(std::string_view what, std::string_view name, std::initializer_list<std::pair<std::string_view, Value>> known) {
+Value named(std::string_view what, std::string_view name,
+            std::initializer_list<std::pair<std::string_view, Value>> known) {
   std::string names;
   for (const auto& [known_name, value] : known) {
     if (known_name == name) return value;
     if (!names.empty()) names += ", ";
     names += known_name;
   }
-  throw Error(ErrorCode::invalid_argument, ErrorDetail{fmt::format("there is no {} called '{}'", what, name), names, {}, {}, {}, {}, {}});
+  throw Error(ErrorCode::invalid_argument,
+              ErrorDetail{fmt::format("there is no {} called '{}'", what, name), names, {}, {}, {}, {}, {}});
 }
 
 }  // namespace
 
 Kernel kernel_of(std::string_view name) {
-  return named<Kernel>("kernel", name, {{"cubic_spline", Kernel::cubic_spline}, {"poly6", Kernel::poly6}, {"wyvill", Kernel::wyvill}});
+  return named<Kernel>("kernel", name,
+                       {{"cubic_spline", Kernel::cubic_spline}, {"poly6", Kernel::poly6}, {"wyvill", Kernel::wyvill}});
 }
 
 NormalMethod normal_method_of(std::string_view name) {
-  return named<NormalMethod>("way to find normals", name,
-                             {{"gradient", NormalMethod::gradient}, {"pca", NormalMethod::pca}, {"blend", NormalMethod::blend}});
+  return named<NormalMethod>(
+      "way to find normals", name,
+      {{"gradient", NormalMethod::gradient}, {"pca", NormalMethod::pca}, {"blend", NormalMethod::blend}});
 }
 
 Refinement refinement_of(std::string_view name) {
@@ -59,9 +67,12 @@ Refinement refinement_of(std::string_view name) {
 
 float kernel_value(Kernel kernel, float r, float h) {
   switch (kernel) {
-    case Kernel::cubic_spline: return formulas::cubic_spline(r, h);
-    case Kernel::poly6: return formulas::poly6(r, h);
-    case Kernel::wyvill: break;
+    case Kernel::cubic_spline:
+      return formulas::cubic_spline(r, h);
+    case Kernel::poly6:
+      return formulas::poly6(r, h);
+    case Kernel::wyvill:
+      break;
   }
   return formulas::wyvill(r, h);
 }

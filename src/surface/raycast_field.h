@@ -12,12 +12,12 @@ namespace meniscus {
 struct RaycastField {
   RaycastOptions options;  ///< checked, every length resolved
   ParticleGrid grid;
-  std::vector<float> mass;          ///< m_j by sorted index, padded like the grid's arrays
-  std::vector<float> entry_radius;  ///< m by sorted index: the sphere outside of which j makes no surface
+  std::vector<float> mass;              ///< m_j by sorted index, padded like the grid's arrays
+  std::vector<float> entry_radius;      ///< m by sorted index: the sphere outside of which j makes no surface
   std::vector<float> red, green, blue;  ///< linear, by sorted index, padded; empty without colours
   std::vector<std::uint8_t> hidden;     ///< by cell: no ray sees its particles before others; may be empty
-  float scale = 0;  ///< spacing^3 W(0, h): what a unit mass adds to rho at its own place
-  float step = 0;   ///< m, of the march
+  float scale = 0;                      ///< spacing^3 W(0, h): what a unit mass adds to rho at its own place
+  float step = 0;                       ///< m, of the march
 
   bool has_colours() const { return !red.empty(); }
   bool is_hidden(std::size_t cell) const { return !hidden.empty() && hidden[cell] != 0; }

@@ -16,7 +16,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class PlainRaycastSurface final : public Surface {
  public:
-  PlainRaycastSurface(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours, StageTimes* times)
+  PlainRaycastSurface(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours,
+                      StageTimes* times)
       : field_([&] {
           StageTimer timer(times, "sort");
           return make_field(particles, options, colours);
@@ -42,20 +43,16 @@ class PlainRaycastSurface final : public Surface {
     buffers.exit = Image<float>(width, height, buffers.eye_in_water ? 1e6f * field_.options.spacing : -kInfinity);
     buffers.depth = Image<float>(width, height, kInfinity);
     buffers.coverage = Image<float>(width, height, 0.0f);
-    const auto ray_of = [&](std::size_t i) {
-      if (!points.empty()) return view.ray(points[i]);
-      return view.ray({static_cast<float>(i % static_cast<std::size_t>(width)) + 0.5f,
-                       static_cast<float>(i / static_cast<std::size_t>(width)) + 0.5f});
-    };
+    const std::vector<Ray> rays = rays_of(view, points);
     if (!buffers.eye_in_water) {
       StageTimer timer(times, "splat");
-      splat(view, points, ray_of, buffers);
+      splat(view, points, rays, buffers);
     }
     {
       StageTimer timer(times, "march");
       for (std::size_t i = 0; i < buffers.depth.size(); ++i) {
         if (!(buffers.entry[i] <= buffers.exit[i])) continue;
-        buffers.depth[i] = march(ray_of(i), buffers.entry[i], buffers.exit[i], buffers.eye_in_water ? -1.0f : 1.0f);
+        buffers.depth[i] = march(rays[i], buffers.entry[i], buffers.exit[i], buffers.eye_in_water ? -1.0f : 1.0f);
         buffers.coverage[i] = buffers.depth[i] < kInfinity ? 1.0f : 0.0f;
       }
     }
@@ -65,14 +62,14 @@ class PlainRaycastSurface final : public Surface {
       if (field_.has_colours()) buffers.colour = Image<vec3>(width, height, vec3{0});
       for (std::size_t i = 0; i < buffers.depth.size(); ++i) {
         if (!(buffers.depth[i] < kInfinity)) continue;
-        const Ray ray = ray_of(i);
+        const Ray ray = rays[i];
         const vec3 point = ray.origin + buffers.depth[i] * ray.direction;
         buffers.normal[i] = normal_at(point, -ray.direction);
         if (field_.has_colours()) buffers.colour[i] = colour_at(point);
       }
       if (points.empty() && field_.options.filter_radius > 0) {
         StageTimer filter_timer(times, "filter");
-        buffers.normal = filtered(buffers, ray_of);
+        buffers.normal = filtered(buffers, rays);
       }
     }
     if (field_.options.want_thickness) buffers.thickness = thickness(view, points, times);
@@ -83,11 +80,12 @@ class PlainRaycastSurface final : public Surface {
     StageTimer timer(times, "thickness");
     const float r = field_.options.spacing;  // spheres of this radius, each of one particle's volume
     const float weight = 1.0f / (4.0f / 3.0f * 3.14159265f);
+    const std::vector<Ray> rays = rays_of(view, points);
     Image<float> sum(points.empty() ? view.width : static_cast<int>(points.size()), points.empty() ? view.height : 1);
     for (std::size_t i = 0; i < field_.grid.size(); ++i) {
       const vec3 centre = field_.grid.position(i);
-      for_each_covered(view, points, centre, r, [&](std::size_t pixel, const Ray& ray) {
-        const Chord chord = chord_of(ray, centre, r);
+      for_each_covered(view, points, centre, r, [&](std::size_t pixel) {
+        const Chord chord = chord_of(rays[pixel], centre, r);
         if (chord.leave > chord.enter) sum[pixel] += weight * (chord.leave - chord.enter);
       });
     }
@@ -112,11 +110,23 @@ class PlainRaycastSurface final : public Surface {
     return {std::max(middle - half, 0.0f), middle + half};
   }
 
-  /// Calls visit(index, ray) for the pixels, or points, that a sphere may cover.
+  /// The rays through the pixel centres, row after row, or through the points.
+  static std::vector<Ray> rays_of(const View& view, std::span<const vec2> points) {
+    std::vector<Ray> rays;
+    for (const vec2 point : points) rays.push_back(view.ray(point));
+    if (!points.empty()) return rays;
+    rays.reserve(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x)
+        rays.push_back(view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
+    return rays;
+  }
+
+  /// Calls visit(index) for the pixels, or points, that a sphere may cover.
   template <class Visit>
   void for_each_covered(const View& view, std::span<const vec2> points, vec3 centre, float radius, Visit visit) const {
     if (!points.empty()) {
-      for (std::size_t i = 0; i < points.size(); ++i) visit(i, view.ray(points[i]));
+      for (std::size_t i = 0; i < points.size(); ++i) visit(i);
       return;
     }
     int x0 = 0, y0 = 0, x1 = view.width - 1, y1 = view.height - 1;
@@ -135,17 +145,16 @@ class PlainRaycastSurface final : public Surface {
     }
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x)
-        visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x),
-              view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
+        visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x));
   }
 
-  template <class RayOf>
-  void splat(const View& view, std::span<const vec2> points, RayOf, SurfaceBuffers& buffers) const {
+  void splat(const View& view, std::span<const vec2> points, const std::vector<Ray>& rays,
+             SurfaceBuffers& buffers) const {
     for (std::size_t i = 0; i < field_.grid.size(); ++i) {
       const vec3 centre = field_.grid.position(i);
       const float radius = field_.entry_radius[i];
-      for_each_covered(view, points, centre, radius, [&](std::size_t pixel, const Ray& ray) {
-        const Chord chord = chord_of(ray, centre, radius);
+      for_each_covered(view, points, centre, radius, [&](std::size_t pixel) {
+        const Chord chord = chord_of(rays[pixel], centre, radius);
         buffers.entry[pixel] = std::min(buffers.entry[pixel], chord.enter);
         buffers.exit[pixel] = std::max(buffers.exit[pixel], chord.leave);
       });
@@ -169,7 +178,8 @@ class PlainRaycastSurface final : public Surface {
     const float h = field_.options.smoothing_length;
     const float volume = field_.options.spacing * field_.options.spacing * field_.options.spacing;
     float sum = 0;
-    for_each_neighbour(point, h, [&](std::size_t j, float r) { sum += field_.mass[j] * kernel_value(field_.options.kernel, r, h); });
+    for_each_neighbour(
+        point, h, [&](std::size_t j, float r) { sum += field_.mass[j] * kernel_value(field_.options.kernel, r, h); });
     return volume * sum;
   }
 
@@ -187,13 +197,16 @@ class PlainRaycastSurface final : public Surface {
 
   /// m along the ray to where sign (rho - iso) becomes positive; infinity if it does not before `exit`.
   float march(const Ray& ray, float entry, float exit, float sign) const {
-    const auto value_at = [&](float t) { return sign * (density_at(ray.origin + t * ray.direction) - field_.options.iso); };
+    const auto value_at = [&](float t) {
+      return sign * (density_at(ray.origin + t * ray.direction) - field_.options.iso);
+    };
     float before = 0;
     for (int n = 0;; ++n) {
       const float t = entry + static_cast<float>(n) * field_.step;
       if (t > exit) return kInfinity;
       const float value = value_at(t);
-      if (value >= 0.0f) return n == 0 ? backwards(entry, value, value_at) : refined(t - field_.step, before, t, value, value_at);
+      if (value >= 0.0f)
+        return n == 0 ? backwards(entry, value, value_at) : refined(t - field_.step, before, t, value, value_at);
       before = value;
     }
   }
@@ -215,7 +228,9 @@ class PlainRaycastSurface final : public Surface {
 
   template <class ValueAt>
   float refined(float low_t, float low, float high_t, float high, ValueAt value_at) const {
-    const auto secant = [&] { return low_t + std::clamp(high > low ? -low / (high - low) : 0.5f, 0.0f, 1.0f) * (high_t - low_t); };
+    const auto secant = [&] {
+      return low_t + std::clamp(high > low ? -low / (high - low) : 0.5f, 0.0f, 1.0f) * (high_t - low_t);
+    };
     for (int i = 0; i < field_.options.refinement_steps; ++i) {
       const float t = field_.options.refinement == Refinement::secant ? secant() : 0.5f * (low_t + high_t);
       const float value = value_at(t);
@@ -261,23 +276,22 @@ class PlainRaycastSurface final : public Surface {
     const vec3 pca = agreement < 0 ? -eigen.direction : eigen.direction;
     if (field_.options.normals == NormalMethod::pca) return pca;
     // Eq. 5 and 6
-    const float w = std::min(1.0f, std::exp(field_.options.blend_sharpness * (std::abs(agreement) - field_.options.blend_agreement)));
+    const float w = std::min(
+        1.0f, std::exp(field_.options.blend_sharpness * (std::abs(agreement) - field_.options.blend_agreement)));
     return glm::normalize((1.0f - w) * normal + w * pca);
   }
 
-  template <class RayOf>
-  Image<vec3> filtered(const SurfaceBuffers& buffers, RayOf ray_of) const;
+  Image<vec3> filtered(const SurfaceBuffers& buffers, const std::vector<Ray>& rays) const;
 
   RaycastField field_;
 };
 
-template <class RayOf>
-Image<vec3> PlainRaycastSurface::filtered(const SurfaceBuffers& buffers, RayOf ray_of) const {
+Image<vec3> PlainRaycastSurface::filtered(const SurfaceBuffers& buffers, const std::vector<Ray>& rays) const {
   const int radius = field_.options.filter_radius, width = buffers.depth.width(), height = buffers.depth.height();
   const float sigma = 0.5f * static_cast<float>(radius), tolerance = 0.5f * field_.options.spacing;
   Image<vec3> result(width, height, vec3{0});
   const auto point_at = [&](int x, int y) {
-    const Ray ray = ray_of(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+    const Ray& ray = rays[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
     return ray.origin + buffers.depth(x, y) * ray.direction;
   };
   for (int y = 0; y < height; ++y)

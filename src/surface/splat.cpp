@@ -78,18 +78,21 @@ PixelRect covered_pixels(const Camera& camera, vec3 centre, float radius) {
 /// Spheres by the tile that they touch, in their given order within each tile.
 struct Bins {
   int tiles_x = 0, tiles_y = 0;
-  std::vector<PixelRect> rects;       ///< by sphere
-  std::vector<std::uint32_t> start;   ///< by tile, and one more
+  std::vector<PixelRect> rects;      ///< by sphere
+  std::vector<std::uint32_t> start;  ///< by tile, and one more
   std::vector<std::uint32_t> spheres;
 };
 
-float radius_of(const Spheres& spheres, std::size_t i) { return spheres.radius.size() == 1 ? spheres.radius[0] : spheres.radius[i]; }
+float radius_of(const Spheres& spheres, std::size_t i) {
+  return spheres.radius.size() == 1 ? spheres.radius[0] : spheres.radius[i];
+}
 
 template <class Visit>
 void for_each_tile(const Bins& bins, const PixelRect& rect, Visit visit) {
   if (rect.empty()) return;
   for (int ty = rect.y0 / kTileHeight; ty <= rect.y1 / kTileHeight; ++ty)
-    for (int tx = rect.x0 / kTileWidth; tx <= rect.x1 / kTileWidth; ++tx) visit(static_cast<std::size_t>(ty * bins.tiles_x + tx));
+    for (int tx = rect.x0 / kTileWidth; tx <= rect.x1 / kTileWidth; ++tx)
+      visit(static_cast<std::size_t>(ty * bins.tiles_x + tx));
 }
 
 Bins sort_into_tiles(const Camera& camera, const Spheres& spheres) {
@@ -105,7 +108,8 @@ Bins sort_into_tiles(const Camera& camera, const Spheres& spheres) {
   std::vector<std::vector<std::uint32_t>> counters(blocks, std::vector<std::uint32_t>(tiles, 0));
   parallel_for(blocks, 1, [&](std::size_t block, std::size_t) {
     for (std::size_t i = block * per_block; i < block_end(block); ++i) {
-      bins.rects[i] = covered_pixels(camera, camera.to_camera({spheres.x[i], spheres.y[i], spheres.z[i]}), radius_of(spheres, i));
+      bins.rects[i] =
+          covered_pixels(camera, camera.to_camera({spheres.x[i], spheres.y[i], spheres.z[i]}), radius_of(spheres, i));
       for_each_tile(bins, bins.rects[i], [&](std::size_t tile) { ++counters[block][tile]; });
     }
   });
@@ -123,7 +127,8 @@ Bins sort_into_tiles(const Camera& camera, const Spheres& spheres) {
   bins.spheres.resize(sum);
   parallel_for(blocks, 1, [&](std::size_t block, std::size_t) {
     for (std::size_t i = block * per_block; i < block_end(block); ++i)
-      for_each_tile(bins, bins.rects[i], [&](std::size_t tile) { bins.spheres[counters[block][tile]++] = static_cast<std::uint32_t>(i); });
+      for_each_tile(bins, bins.rects[i],
+                    [&](std::size_t tile) { bins.spheres[counters[block][tile]++] = static_cast<std::uint32_t>(i); });
   });
   return bins;
 }
@@ -134,14 +139,16 @@ struct TileArea {
 
 /// Calls visit(rays, sphere) for every sphere of the tile, then is done with it.
 template <class Visit>
-void splat_tile(const Camera& camera, const Spheres& spheres, const Bins& bins, std::size_t tile, TileArea& area, Visit visit) {
+void splat_tile(const Camera& camera, const Spheres& spheres, const Bins& bins, std::size_t tile, TileArea& area,
+                Visit visit) {
   const int tile_x = static_cast<int>(tile) % bins.tiles_x, tile_y = static_cast<int>(tile) / bins.tiles_x;
   area = {tile_x * kTileWidth, tile_y * kTileHeight, 0, 0};
   area.width = std::min(kTileWidth, camera.width - area.x);
   area.height = std::min(kTileHeight, camera.height - area.y);
   alignas(64) float inverse_length[kTileWidth * kTileHeight];
-  TileRays rays{camera.perspective, camera.u0 + static_cast<float>(area.x) * camera.du, camera.du,
-                camera.v0 + static_cast<float>(area.y) * camera.dv, camera.dv, inverse_length};
+  TileRays rays{camera.perspective, camera.u0 + static_cast<float>(area.x) * camera.du,
+                camera.du,          camera.v0 + static_cast<float>(area.y) * camera.dv,
+                camera.dv,          inverse_length};
   if (camera.perspective && bins.start[tile] < bins.start[tile + 1])
     for (int y = 0; y < kTileHeight; ++y)
       for (int x = 0; x < kTileWidth; ++x) {
@@ -191,9 +198,8 @@ Image<float> splat_chords(const View& view, const Spheres& spheres, float weight
   parallel_for(static_cast<std::size_t>(bins.tiles_x * bins.tiles_y), 1, [&](std::size_t tile, std::size_t) {
     alignas(64) float tile_sum[kTileWidth * kTileHeight] = {};
     TileArea area{};
-    splat_tile(camera, spheres, bins, tile, area, [&](const TileRays& rays, const TileSphere& sphere) {
-      splat_chord_into_tile(rays, sphere, tile_sum);
-    });
+    splat_tile(camera, spheres, bins, tile, area,
+               [&](const TileRays& rays, const TileSphere& sphere) { splat_chord_into_tile(rays, sphere, tile_sum); });
     for (float& sum : tile_sum) sum *= weight;
     copy_tile(tile_sum, area, sums);
   });

@@ -36,7 +36,8 @@ HWY_INLINE void for_each_chord(const TileRays& rays, const TileSphere& sphere, V
         const Vec dz = hn::Load(d, rays.inverse_length + offset);
         const Vec dx = hn::Mul(u, dz), dy = hn::Mul(v, dz);
         middle = hn::MulAdd(cx, dx, hn::MulAdd(cy, dy, hn::Mul(cz, dz)));
-        const Vec ox = hn::NegMulAdd(middle, dx, cx), oy = hn::NegMulAdd(middle, dy, cy), oz = hn::NegMulAdd(middle, dz, cz);
+        const Vec ox = hn::NegMulAdd(middle, dx, cx), oy = hn::NegMulAdd(middle, dy, cy),
+                  oz = hn::NegMulAdd(middle, dz, cz);
         off_axis2 = hn::MulAdd(ox, ox, hn::MulAdd(oy, oy, hn::Mul(oz, oz)));
       } else {
         const Vec ox = hn::Sub(cx, u), oy = hn::Sub(cy, v);

@@ -1,8 +1,8 @@
 /// The innermost loops of the splatting, by instruction set.
 #pragma once
 
-#include <cstdint>
 #include <cstddef>
+#include <cstdint>
 
 namespace meniscus {
 
