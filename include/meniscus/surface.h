@@ -90,6 +90,17 @@ std::unique_ptr<Surface> make_raycast_surface(const Particles& particles, const 
 std::unique_ptr<Surface> make_plain_raycast_surface(const Particles& particles, const RaycastOptions& options,
                                                     std::span<const vec3> colours = {}, StageTimes* times = nullptr);
 
+// --- Particles as they are ---------------------------------------------------------------------------------
+
+/// One ball a particle, no surface between them: a look at the raw particles.
+/// @param radius   m, > 0
+/// @param colours  one linear colour a particle, or empty
+/// @throws Error   invalid_argument: radius <= 0, colours of another number than the particles
+std::unique_ptr<Surface> make_sphere_surface(const Particles& particles, float radius,
+                                             std::span<const vec3> colours = {});
+
+// --- Instruction sets --------------------------------------------------------------------------------------
+
 /// Names of the instruction sets that this processor can run, best first ("avx3", "avx2", "sse4", ...).
 std::vector<std::string> instruction_sets();
 /// Makes the vectorised loops use one of them from now on; "best" goes back to the best one.
