@@ -185,12 +185,12 @@ std::vector<Neighbour> NearestIndex::nearest(std::uint32_t query, std::size_t co
     std::array<Run, 27> runs;
     std::size_t run_count = 0, candidates = 0;
     double reach = std::numeric_limits<double>::infinity();
-    std::array<std::int64_t, 3> first, end;
+    std::int64_t first[3], end[3];
     for (int a = 0; a < 3; ++a) {
       const auto c = static_cast<std::int64_t>(cube[a]);
       first[a] = std::max<std::int64_t>(c - 1, 0);
       end[a] = std::min(c + 1, last) + 1;
-      if (c > 0 && c - 1 > 0) reach = std::min(reach, place[a] - static_cast<double>(first[a]) * edge);
+      if (c > 1) reach = std::min(reach, place[a] - static_cast<double>(first[a]) * edge);
       if (c + 1 < last) reach = std::min(reach, static_cast<double>(end[a]) * edge - place[a]);
     }
     for (std::int64_t z = first[2]; z < end[2]; ++z) {

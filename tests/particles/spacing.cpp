@@ -173,7 +173,7 @@ TEST(SpacingEstimate, OfNoParticlesIsZero) {
 }
 
 TEST(SpacingEstimate, OfOnePlaceIsPositiveAndSaysThatItIsTaken) {
-  for (const std::size_t count : {1, 2, 1000, 20000}) {
+  for (const std::size_t count : std::initializer_list<std::size_t>{1, 2, 1000, 20000}) {
     const SpacingEstimate estimate = estimate_spacing(spray(count, {1, 2, 3}, {1, 2, 3}));
     EXPECT_GT(estimate.spacing, 0) << count;
     EXPECT_NE(estimate.reasoning.find("taken"), std::string::npos) << estimate.reasoning;
