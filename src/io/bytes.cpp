@@ -80,7 +80,7 @@ Bytes read_file(const std::string& path, std::size_t most) {
 }
 
 std::uint64_t believable_size(std::uint64_t compressed_size) {
-  return std::max<std::uint64_t>(std::uint64_t{256} << 20, 200 * compressed_size);
+  return std::max<std::uint64_t>(std::uint64_t{64} << 20, 200 * compressed_size);
 }
 
 }  // namespace meniscus::io

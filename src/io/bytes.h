@@ -45,7 +45,7 @@ struct Source {
 /// @throws Error not_found, io_failed (a directory, a device, no permission)
 Bytes read_file(const std::string& path, std::size_t most = ~std::size_t{0});
 
-/// Most bytes that are believed to hide in `compressed_size` bytes: 256 MiB, or 200 times the compressed size
+/// Most bytes that are believed to hide in `compressed_size` bytes: 64 MiB, or 200 times the compressed size
 /// where that is more. Particles compress two to ten times; only lattices at rest reach a hundred.
 std::uint64_t believable_size(std::uint64_t compressed_size);
 

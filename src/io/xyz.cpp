@@ -136,6 +136,7 @@ class XyzReader {
         if (cells_.size() == 1 && !declared_count_ && parse_count(cells_[0], declared_count_.emplace())) continue;
         if (cells_.size() < 3) fail("a line has too few numbers", "x y z", line);
         row_length_ = line.size() + 1;
+        ends_in_separator_ = line.back() == ',' || line.back() == ';';
         text_.seek(start);
         --line_number_;
         return true;
@@ -148,9 +149,14 @@ class XyzReader {
   }
 
   void name_columns() {
-    const std::size_t count = cells_.size();
     std::optional<Columns> columns;
-    if (!header_.empty()) columns = columns_of(header_, count, false);
+    if (!header_.empty()) columns = columns_of(header_, cells_.size(), false);
+    if (!columns && ends_in_separator_) {
+      // What looked like a separator at the line's end is an empty last cell if the header has a name for it.
+      columns = columns_of(header_, cells_.size() + 1, false);
+      if (columns) cells_.emplace_back();
+    }
+    const std::size_t count = cells_.size();
     if (!columns && !comments_.empty()) columns = columns_of(comments_[0], count, true);
     if (columns) columns_ = std::move(*columns);
     if (columns_.names.empty() && count > 3) {
@@ -225,6 +231,7 @@ class XyzReader {
   std::vector<std::string> comments_;
   std::optional<std::uint64_t> declared_count_;
   std::size_t row_length_ = 1;
+  bool ends_in_separator_ = false;
   Columns columns_;
   std::vector<std::string_view> cells_;
   std::vector<std::vector<float>> values_;

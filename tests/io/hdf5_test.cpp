@@ -1,0 +1,86 @@
+#include <cmath>
+
+#include "small_frames.h"
+
+namespace meniscus {
+namespace {
+
+TEST(Hdf5, ReadsTheFluidOfPysphWithItsArrays) {
+  const Particles particles = read_particles(sample("pysph.hdf5"));
+  EXPECT_EQ(particles.format, "hdf5");
+  expect_small(particles);
+  EXPECT_EQ(particles.time, 0.375);
+  EXPECT_EQ(particles.find("gid")->values[6], 60.0f);
+  EXPECT_EQ(particles.find("tag")->values[6], 0.0f);
+  // An array of two values a particle, one that is not stored, and one of another length.
+  ASSERT_NE(particles.find("gradient"), nullptr);
+  EXPECT_EQ(particles.find("gradient")->components, 2);
+  EXPECT_EQ(particles.find("au"), nullptr);
+  EXPECT_EQ(particles.find("spare"), nullptr);
+}
+
+TEST(Hdf5, SaysWhichGroupWasReadAndWhichWereNot) {
+  const Particles particles = read_particles(sample("pysph.hdf5"));
+  ASSERT_FALSE(particles.notes.empty());
+  const std::string& note = particles.notes.back();
+  for (const char* name : {"'fluid' (7", "'boundary' (3", "'zz_inlet' (5"}) {
+    EXPECT_NE(note.find(name), std::string::npos) << note;
+  }
+}
+
+TEST(Hdf5, KnowsTheSpacingFromMassAndDensity) {
+  // m = 1000/64 and a median density of 1003: a cube of edge (15.625 / 1003)^(1/3).
+  const Particles particles = read_particles(sample("pysph.hdf5"));
+  ASSERT_TRUE(particles.spacing.has_value());
+  EXPECT_NEAR(*particles.spacing, 0.25f * std::cbrt(1000.0f / 1003.0f), 1e-6f);
+  EXPECT_FALSE(read_particles(sample("tiny.hdf5")).spacing.has_value());
+}
+
+TEST(Hdf5, TakesObstaclesLastAndReadsCompressedBigEndianArrays) {
+  const Particles particles = read_particles(sample("pysph_gzip.hdf5"));
+  ASSERT_EQ(particles.size(), 4u);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(particles.position(static_cast<std::size_t>(i)), small_position(i));
+  EXPECT_EQ(particles.time, 0.375);
+}
+
+TEST(Hdf5, OfAnotherLayoutIsUnsupported) {
+  EXPECT_EQ(refused(sample("other.hdf5")).code(), ErrorCode::unsupported);
+  const Scratch scratch;
+  EXPECT_EQ(refused(scratch.write("f.hdf5.gz", gzipped(bytes_of_file(sample("tiny.hdf5"))))).code(),
+            ErrorCode::unsupported);
+}
+
+TEST(Hdf5, IsToldFromItsContentUnderAnyName) {
+  const Scratch scratch;
+  expect_small(read_particles(scratch.write("f.txt", bytes_of_file(sample("tiny.hdf5")))), false);
+  EXPECT_EQ(refused(scratch.write("f.hdf5", "1 2 3\n")).code(), ErrorCode::malformed_file);
+}
+
+TEST(Hdf5, ReadsTheWholeExampleSequence) {
+  const std::string directory[] = {std::string(MENISCUS_SOURCE_DIR) + "/data/dam_break_3d"};
+  const FrameSequence sequence = find_frames(directory);
+  ASSERT_EQ(sequence.frames.size(), 58u);
+  EXPECT_TRUE(sequence.notes.empty());
+  double time = -1;
+  for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+    EXPECT_EQ(sequence.frames[i].number, static_cast<std::int64_t>(90 * i));
+    const Particles particles = read_particles(sequence.frames[i].path);
+    EXPECT_EQ(particles.size(), 42042u);
+    ASSERT_TRUE(particles.time.has_value());
+    EXPECT_GT(*particles.time, time);
+    time = *particles.time;
+    ASSERT_NE(particles.find("velocity"), nullptr);
+    // Inside the tank, whose walls give way a little.
+    const Bounds bounds = particles.bounds();
+    EXPECT_GT(bounds.low.x, 0.0f);
+    EXPECT_LT(bounds.high.x, 3.23f);
+    EXPECT_GT(bounds.low.y, -0.5f);
+    EXPECT_LT(bounds.high.y, 0.5f);
+    EXPECT_GT(bounds.low.z, 0.0f);
+    EXPECT_LT(bounds.high.z, 1.2f);
+  }
+  EXPECT_NEAR(time, 1.41, 0.01);
+}
+
+}  // namespace
+}  // namespace meniscus
