@@ -18,8 +18,8 @@ struct Neighbour {
 /// begin at whatever scale the particles around the query have, be it micrometres or kilometres.
 ///
 /// Beyond `limit` particles only those of some cubes (blocks) are kept, chosen by a hash of where they are; a
-/// query whose surroundings reach out of its block then has no answer. Memory: 40 bytes a kept particle while
-/// building, 20 afterwards.
+/// query whose surroundings reach out of its block then has no answer. Memory while building: 8 bytes a particle and
+/// 32 a kept one; afterwards 20 a kept one.
 class NearestIndex {
  public:
   /// @param frame  cube corner and edge are taken from it; particles outside count as lying on its border,
