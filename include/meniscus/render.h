@@ -1,0 +1,279 @@
+/// From frames to pictures: the order of the stages, and what nobody has to say because it can be guessed.
+///
+///   find_frames -> survey_frames -> settings_of, view_of -> for each frame: read_particles -> render_frame -> write
+///
+/// render_files() does all of it in one call.
+#pragma once
+
+#include <memory>
+
+#include "meniscus/base.h"
+#include "meniscus/image.h"
+#include "meniscus/io.h"
+#include "meniscus/output.h"
+#include "meniscus/particles.h"
+#include "meniscus/scene.h"
+#include "meniscus/shading.h"
+#include "meniscus/surface.h"
+
+namespace meniscus {
+
+// --- One frame ---------------------------------------------------------------------------------------------
+
+enum class Antialias {
+  off,
+  edges,  ///< 16 rays in the pixels where the water's outline or a fold of it passes
+  full,   ///< the whole picture at twice its width and height, then halved ("2x2")
+};
+/// "off", "edges" or "2x2". @throws Error invalid_argument
+Antialias antialias_of(std::string_view name);
+
+/// Everything that one frame is drawn by. settings_of() fills it from guesses; or set what you like.
+struct FrameSettings {
+  View view;
+  RaycastOptions surface;          ///< spacing > 0 is required
+  std::optional<ColourBy> colour;  ///< none: the material's own colour
+  Material material;
+  Environment environment{EnvironmentOptions{}};
+  Ground ground;
+  bool shadow = true;  ///< the water's soft shadow on the ground
+  ToneOptions tone;
+  Antialias antialias = Antialias::edges;
+  bool legend = false;    ///< a colour bar, where `colour` is set
+  int drop_isolated = 0;  ///< leave out particles with fewer neighbours than this; 0: none
+};
+
+/// One drawn frame, with everything that led to it.
+struct FramePicture {
+  Image<Rgb8> picture;                     ///< developed, with the legend
+  Image<vec3> radiance;                    ///< linear
+  SurfaceBuffers buffers;                  ///< at the pixel centres; coverage and thickness averaged where antialiased
+  StageTimes times;                        ///< one row a stage
+  std::size_t particles = 0;               ///< drawn ones
+  std::pair<float, float> colour_range{};  ///< what the ends of the colour map stand for
+};
+
+/// Draws one frame. No particles give the scene without water.
+/// @throws Error  invalid_argument: a setting outside its range; not_found: no such attribute to colour by
+FramePicture render_frame(const Particles& particles, const FrameSettings& settings);
+
+/// The layers of a drawn frame as an EXR file holds them, in this order: radiance (R, G, B), depth (Z: m along
+/// the viewing direction), normal (X, Y, Z), thickness (m), coverage, colour (only where particles are coloured).
+std::vector<std::string> layer_names();
+/// @param layers  which of them; empty: all that there are
+/// @throws Error  invalid_argument: an unknown name; io_failed
+void write_layers(const std::string& path, const FramePicture& frame, const View& view,
+                  std::span<const std::string> layers = {});
+
+// --- The camera --------------------------------------------------------------------------------------------
+
+/// Where the picture is taken from. What is not set is fitted so that the whole water is in the picture.
+/// Azimuth turns about the up axis: at 0 the camera stands on the negative side of the second horizontal axis of
+/// (right, back), which is +z where y is up and -y where z is up; at 90 it stands on the side of +x.
+struct CameraOptions {
+  std::optional<vec3> eye;                   ///< m
+  std::optional<vec3> target;                ///< m; default the middle of the water
+  std::optional<float> azimuth_deg;          ///< default 30 off the water's longer horizontal side
+  std::optional<float> elevation_deg;        ///< above the horizon; default 20
+  std::optional<float> distance;             ///< m from the target
+  std::optional<float> orthographic_height;  ///< m; parallel rays, a picture of this height
+  float fov_deg = 35;                        ///< full vertical field of view
+  float margin = 0.06f;                      ///< of the picture's half size, left free at each side
+  float orbit_deg = 0;                       ///< turned about the water over the whole sequence
+};
+
+/// The azimuth that is taken when none is given.
+float default_azimuth_deg(const Bounds& bounds, Axis up);
+/// Unit vector from the target towards a camera (or the sun) at this azimuth and elevation.
+vec3 direction_towards(Axis up, float azimuth_deg, float elevation_deg);
+
+/// A view that shows all of `bounds`, as far as the options leave it free.
+/// @param turned_deg  added to the azimuth; with options.orbit_deg != 0 the distance is that of the whole turn
+/// @throws Error invalid_argument: angles, sizes, distance out of range
+View fitted_view(const Bounds& bounds, Axis up, const CameraOptions& options, float turned_deg, int width, int height);
+
+/// One key of a camera path.
+struct CameraKey {
+  double at = 0;   ///< frame of the film from 0, or seconds of the film
+  vec3 eye{0};     ///< m
+  vec3 target{0};  ///< m
+  float fov_deg = 35;
+};
+
+/// A way through keys: Catmull-Rom, each of eye, target and field of view for itself; still before the first key
+/// and after the last.
+class CameraPath {
+ public:
+  /// @throws Error invalid_argument: no keys, keys not in rising order
+  CameraPath(std::vector<CameraKey> keys, bool in_seconds);
+  CameraKey at(double place) const;
+  bool in_seconds() const { return in_seconds_; }
+  const std::vector<CameraKey>& keys() const { return keys_; }
+
+ private:
+  std::vector<CameraKey> keys_;
+  bool in_seconds_;
+};
+
+/// Reads {"keys": [{"frame": 0, "eye": [x, y, z], "target": [x, y, z], "fov": 35}, ...]}; "time" (s) may stand
+/// for "frame", in all keys alike; "fov" (degrees) may be missing.
+/// @throws Error not_found, malformed_file naming the field
+CameraPath read_camera_path(const std::string& path, float default_fov_deg = 35);
+
+// --- What is found out about a sequence --------------------------------------------------------------------
+
+struct SurveyOptions {
+  std::optional<float> spacing;    ///< m; not estimated if set
+  std::optional<Axis> up;          ///< not guessed if set
+  std::optional<ColourBy> colour;  ///< whose range is looked for, unless it has one
+  int most_frames = 64;            ///< of a longer sequence, this many are read, evenly spread
+  bool strict = false;             ///< a frame that cannot be read is an error
+};
+
+/// A sequence at a glance.
+struct Survey {
+  std::size_t frames = 0;          ///< in the sequence
+  std::size_t frames_read = 0;     ///< of them, for this survey
+  std::size_t most_particles = 0;  ///< in one frame
+  Bounds bounds;                   ///< of the water over the sequence, without the few particles far away
+  SpacingEstimate spacing;         ///< of the first frame with enough particles to tell; 0 if none has any
+  UpEstimate up;
+  std::vector<std::string> attributes;                  ///< of the first frame that has particles
+  std::optional<std::pair<float, float>> colour_range;  ///< over the frames read
+  std::vector<std::string> notes;       ///< what a user should be told: guesses from a part of the frames and the like
+  std::vector<std::string> unreadable;  ///< one line for each frame that could not be read
+  std::shared_ptr<const Particles> only_frame;  ///< of a sequence of one frame, so that it is read once
+};
+
+/// Reads the frames (of a long sequence, some) and finds out what the pictures need to have in common.
+/// @param on_frame  called after each frame with how many are done and how many there will be; may be null
+/// @throws Error  with options.strict, or when there is one frame only: whatever reading it throws
+Survey survey_frames(const FrameSequence& sequence, const SurveyOptions& options = {},
+                     FunctionRef<void(std::size_t, std::size_t)>* on_frame = nullptr);
+/// The same of one frame in memory.
+Survey survey_particles(const Particles& particles, const SurveyOptions& options = {});
+
+// --- What a user may set -----------------------------------------------------------------------------------
+
+enum class GroundStyle { chequer, plain, none };
+/// @throws Error invalid_argument
+GroundStyle ground_style_of(std::string_view name);
+
+/// Everything that a user may say about the picture; what is left alone is guessed from the survey.
+struct PictureOptions {
+  int width = 1280;        ///< px
+  int height = 720;        ///< px
+  RaycastOptions surface;  ///< spacing 0 and smoothing_length 0: from the survey
+  int drop_isolated = 0;
+  std::optional<ColourBy> colour;
+  bool legend = false;
+  std::string material;            ///< empty: water; plastic where particles are coloured
+  std::optional<vec3> extinction;  ///< 1/m
+  std::optional<vec3> tint;        ///< in (0, 1]: what white light becomes over the depth of the scene
+  std::string environment_hdr;     ///< a Radiance .hdr file; empty: the analytic sky
+  std::optional<vec2> sun_deg;     ///< azimuth and elevation
+  GroundStyle ground = GroundStyle::chequer;
+  std::optional<float> ground_height;  ///< m; default the lowest point of the water
+  bool shadow = true;
+  CameraOptions camera;
+  std::optional<CameraPath> path;  ///< goes before `camera`
+  ToneOptions tone;
+  Antialias antialias = Antialias::edges;
+};
+
+/// One thing that was guessed, why, and how to say it yourself.
+struct Guess {
+  std::string what;   ///< "particle spacing"
+  std::string value;  ///< "0.025 m"
+  std::string reasoning;
+  std::string option;  ///< "--spacing METRES"
+};
+std::vector<Guess> guesses_of(const Survey& survey, const PictureOptions& options);
+
+/// Settings for the frames of a sequence, with the view of its first picture.
+/// @throws Error invalid_argument: options out of range; not_found, malformed_file: the environment map
+FrameSettings settings_of(const Survey& survey, const PictureOptions& options);
+
+/// The view of picture `index` of `count`.
+View view_of(const Survey& survey, const PictureOptions& options, std::size_t index, std::size_t count,
+             double frames_per_second);
+
+// --- Sequences ---------------------------------------------------------------------------------------------
+
+enum class PictureFormat { png, exr, mp4 };
+
+/// Where pictures go: "still.png", "frames/{}.png", "frames/{:04}.exr", "film.mp4".
+class OutputTarget {
+ public:
+  /// @throws Error invalid_argument: no path, an unknown extension, a pattern that cannot be understood
+  explicit OutputTarget(std::string path);
+  PictureFormat format() const { return format_; }
+  bool is_pattern() const { return is_pattern_; }
+  bool is_film() const { return format_ == PictureFormat::mp4; }
+  const std::string& path() const { return path_; }
+  /// The path of one picture: `{}` becomes the number, `{:04}` the number with zeros in front.
+  std::string path_of(std::int64_t number) const;
+  /// Makes the directory if it is missing and tries to write into it.
+  /// @throws Error io_failed naming the path
+  void prepare() const;
+
+ private:
+  std::string path_;
+  PictureFormat format_;
+  bool is_pattern_;
+};
+
+struct SequenceOptions {
+  std::string output;  ///< see OutputTarget
+  VideoOptions video;
+  bool resume = false;              ///< leave finished files as they are
+  bool strict = false;              ///< stop at the first frame that cannot be drawn
+  std::size_t turntable = 0;        ///< pictures of a sequence of one frame; 0: one
+  std::vector<std::string> layers;  ///< of EXR files; empty: all
+};
+
+/// Refuses what render_sequence() would refuse, before any work, and makes the output's directory.
+/// @throws Error  invalid_argument: several pictures for one file, an unknown kind of file; io_failed
+void check_output(const FrameSequence& sequence, const SequenceOptions& options);
+
+/// What became of one picture.
+struct FrameReport {
+  std::string path;    ///< of the particles
+  std::string output;  ///< of the picture or the film
+  std::size_t particles = 0;
+  int width = 0, height = 0;
+  StageTimes times;
+  double frame_ms = 0;             ///< of the whole, reading and writing included
+  bool skipped = false;            ///< there already, with SequenceOptions::resume
+  std::string problem;             ///< why it was not drawn; empty if it was
+  std::vector<std::string> notes;  ///< particles dropped and the like
+};
+
+struct SequenceReport {
+  std::vector<FrameReport> frames;
+  std::size_t drawn = 0, skipped = 0, failed = 0;
+  StageTimes times;  ///< sums
+};
+
+/// Draws a sequence, one picture a frame, into files or a film. A frame that cannot be read is left out and
+/// reported; in a film the picture before it stands still.
+/// @param on_frame  called after each picture with its report, its place from 0, and the number of pictures
+/// @throws Error  invalid_argument: several pictures for one file; io_failed; with options.strict whatever a frame
+///                throws, and the first such error when no frame could be drawn
+SequenceReport render_sequence(const FrameSequence& sequence, const Survey& survey, const PictureOptions& picture,
+                               const SequenceOptions& options,
+                               FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame = nullptr);
+
+/// Files, directories, globs or patterns in; a picture, pictures or a film out.
+SequenceReport render_files(std::span<const std::string> what, const std::string& output,
+                            const PictureOptions& picture = {});
+
+// --- A scene for measurements ------------------------------------------------------------------------------
+
+/// A tank of water of about 2 : 1 : 2 m (y up) with waves, and a few hundred drops of 1 to 500 particles above it.
+/// Particles stand on a lattice, each displaced by up to 0.2 spacings along each axis; Particles::spacing is set.
+/// The same `count` and `seed` give the same particles.
+/// @throws Error invalid_argument: count of 0
+Particles synthetic_tank(std::size_t count, std::uint64_t seed = 1);
+
+}  // namespace meniscus

@@ -1,0 +1,22 @@
+/// The pixels in which the water's outline or one of its folds passes, and their pictures from many rays.
+#pragma once
+
+#include <cstdint>
+
+#include "meniscus/render.h"
+
+namespace meniscus {
+
+/// Indices (row by row) of the pixels that differ from one of their four neighbours: in coverage; in depth, by more
+/// than two spacings beyond what the slope of the surface explains; or in normal, by more than 35 degrees.
+std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, float spacing);
+
+/// Draws those pixels anew as the average of 4 x 4 rays in each; coverage and thickness become means as well.
+void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,
+                   std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers, Image<vec3>& radiance);
+
+/// The buffers of a picture of twice the size at its own size: coverage and thickness are means; depth, normal and
+/// the rest are of the nearest of the four, colour is the mean of those that show water.
+SurfaceBuffers halved(const SurfaceBuffers& fine);
+
+}  // namespace meniscus

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include "meniscus/render.h"
+#include "render/antialias.h"
+
+namespace meniscus {
+namespace {
+
+/// The sun-facing side of the order of stages: what the water keeps from the ground.
+Scene lit_scene(const Surface& surface, const FrameSettings& settings, StageTimes* times) {
+  Scene scene(settings.environment, settings.ground);
+  if (settings.ground.visible && settings.shadow && !surface.bounds().empty())
+    scene.set_ground_light(ground_light(surface, settings.environment, settings.ground, settings.material, times));
+  return scene;
+}
+
+void draw_colour_bar(FramePicture& frame, const ColourBy& colour) {
+  draw_legend(frame.picture, colour.attribute, frame.colour_range.first, frame.colour_range.second,
+              [&](float t) { return colormap_at(colour.colormap, t); });
+}
+
+}  // namespace
+
+Antialias antialias_of(std::string_view name) {
+  if (name == "off") return Antialias::off;
+  if (name == "edges") return Antialias::edges;
+  if (name == "2x2") return Antialias::full;
+  throw Error(ErrorCode::invalid_argument,
+              {"there is no such antialiasing", "off, edges or 2x2", std::string(name), {}, {}, {}, {}});
+}
+
+FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
+  FramePicture frame;
+  StageTimes* times = &frame.times;
+  const bool full = settings.antialias == Antialias::full;
+  const View view = full ? settings.view.resized(2 * settings.view.width, 2 * settings.view.height) : settings.view;
+  RaycastOptions surface_options = settings.surface;
+  if (full) surface_options.filter_radius *= 2;  // the same width in the picture
+
+  // Stray particles are drops, or nobody's.
+  std::optional<Particles> kept;
+  if (settings.drop_isolated > 0) {
+    const StageTimer timer(times, "particles");
+    const float reach =
+        surface_options.smoothing_length > 0 ? surface_options.smoothing_length : 2 * surface_options.spacing;
+    kept = without_isolated(all, reach, settings.drop_isolated);
+  }
+  const Particles& particles = kept ? *kept : all;
+  frame.particles = particles.size();
+
+  // Each particle's colour, if they have any.
+  std::vector<vec3> colours;
+  if (settings.colour && !particles.empty()) {
+    const StageTimer timer(times, "colours");
+    colours = particle_colours(particles, *settings.colour, frame.colour_range);
+  }
+
+  // The surface, and what of it is seen.
+  const std::unique_ptr<Surface> surface = make_raycast_surface(particles, surface_options, colours, times);
+  frame.buffers = surface->see(view, {}, times);
+
+  // Light.
+  const Scene scene = lit_scene(*surface, settings, times);
+  frame.radiance = shade(view, {}, frame.buffers, scene, settings.material, times);
+
+  // Outlines.
+  if (settings.antialias == Antialias::edges) {
+    const StageTimer timer(times, "antialias");
+    const std::vector<std::uint32_t> pixels = silhouette_pixels(view, frame.buffers, surface_options.spacing);
+    refine_pixels(*surface, view, scene, settings.material, pixels, frame.buffers, frame.radiance);
+  } else if (full) {
+    const StageTimer timer(times, "antialias");
+    frame.radiance = downsampled(frame.radiance, 2);
+    frame.buffers = halved(frame.buffers);
+  }
+
+  // The picture.
+  const StageTimer timer(times, "develop");
+  frame.picture = developed(frame.radiance, settings.tone);
+  if (settings.legend && !colours.empty()) draw_colour_bar(frame, *settings.colour);
+  return frame;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,18 @@
+/// The guesses one by one, as settings_of() takes them and guesses_of() tells them.
+#pragma once
+
+#include "meniscus/render.h"
+
+namespace meniscus {
+
+std::string material_name(const PictureOptions& options);
+/// m; positive even without particles.
+float spacing_of(const Survey& survey, const PictureOptions& options);
+/// m: the depth over which water is seen to be tinted: the shortest edge of the bounds, ten spacings at least.
+float depth_scale(const Survey& survey, const PictureOptions& options);
+/// m along the up axis: half a spacing under the lowest particles.
+float ground_height(const Survey& survey, const PictureOptions& options);
+/// Azimuth and elevation: behind the water to the right of the camera, so that waves glitter and shade.
+vec2 sun_deg(const Survey& survey, const PictureOptions& options);
+
+}  // namespace meniscus

@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <set>
+
+#include "meniscus/render.h"
+
+namespace meniscus {
+namespace {
+
+/// The pictures of a sequence: which frame each shows and the number in its name.
+struct Shot {
+  std::string frame_path;
+  std::int64_t number = 0;
+};
+
+/// Numbers in the file names serve if every frame has one and none twice; else frames are counted from 0.
+std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable) {
+  std::vector<Shot> shots;
+  if (sequence.frames.size() == 1 && turntable > 0) {
+    for (std::size_t i = 0; i < turntable; ++i)
+      shots.push_back({sequence.frames.front().path, static_cast<std::int64_t>(i)});
+    return shots;
+  }
+  std::set<std::int64_t> numbers;
+  for (const FramePath& frame : sequence.frames)
+    if (frame.number) numbers.insert(*frame.number);
+  const bool by_name = numbers.size() == sequence.frames.size();
+  for (const FramePath& frame : sequence.frames)
+    shots.push_back({frame.path, by_name ? *frame.number : static_cast<std::int64_t>(shots.size())});
+  return shots;
+}
+
+void check(const OutputTarget& target, std::size_t pictures) {
+  if (pictures > 1 && !target.is_pattern() && !target.is_film())
+    throw Error(ErrorCode::invalid_argument, {fmt::format("{} pictures do not fit into one file", pictures),
+                                              "a pattern or a film",
+                                              {},
+                                              target.path(),
+                                              {},
+                                              {},
+                                              "write to a name with {} for the frame number, or to an .mp4"});
+  target.prepare();
+}
+
+/// Draws shot after shot; holds what lasts from one to the next.
+class SequenceRun {
+ public:
+  SequenceRun(const Survey& survey, const PictureOptions& picture, const SequenceOptions& options)
+      : survey_(survey), picture_(picture), options_(options), target_(options.output) {}
+
+  SequenceReport run(const std::vector<Shot>& shots,
+                     FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame) {
+    check(target_, shots.size());
+    if (target_.is_film() && finished(target_.path())) return all_skipped(shots, on_frame);
+    settings_ = settings_of(survey_, picture_);
+    SequenceReport report;
+    for (std::size_t i = 0; i < shots.size(); ++i) {
+      report.frames.push_back(one(shots[i], i, shots.size()));
+      const FrameReport& frame = report.frames.back();
+      report.times.add(frame.times);
+      ++(frame.skipped ? report.skipped : frame.problem.empty() ? report.drawn : report.failed);
+      if (on_frame) (*on_frame)(frame, i, shots.size());
+    }
+    if (report.drawn + report.skipped == 0 && first_error_) std::rethrow_exception(first_error_);
+    if (film_) film_->finish();
+    return report;
+  }
+
+ private:
+  bool finished(const std::string& path) const { return options_.resume && std::filesystem::exists(path); }
+
+  SequenceReport all_skipped(const std::vector<Shot>& shots,
+                             FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame) const {
+    SequenceReport report;
+    for (const Shot& shot : shots) {
+      FrameReport frame;
+      frame.path = shot.frame_path;
+      frame.output = target_.path();
+      frame.skipped = true;
+      report.frames.push_back(std::move(frame));
+      if (on_frame) (*on_frame)(report.frames.back(), report.frames.size() - 1, shots.size());
+    }
+    report.skipped = shots.size();
+    return report;
+  }
+
+  FrameReport one(const Shot& shot, std::size_t index, std::size_t count) {
+    const auto start = std::chrono::steady_clock::now();
+    FrameReport report;
+    report.path = shot.frame_path;
+    report.output = target_.path_of(shot.number);
+    if (!target_.is_film() && finished(report.output)) {
+      report.skipped = true;
+      return report;
+    }
+    try {
+      draw(shot, index, count, report);
+    } catch (const Error& error) {
+      // A picture that cannot be written will not be followed by one that can.
+      if (options_.strict || writing_) throw;
+      if (!first_error_) first_error_ = std::current_exception();
+      report.problem = error.what();
+      if (film_) film_->add(last_picture_);
+    }
+    report.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return report;
+  }
+
+  void draw(const Shot& shot, std::size_t index, std::size_t count, FrameReport& report) {
+    std::shared_ptr<const Particles> particles = survey_.only_frame;
+    if (!particles) {
+      const StageTimer timer(&report.times, "read");
+      particles = std::make_shared<Particles>(read_particles(shot.frame_path));
+    }
+    if (particles->dropped_non_finite > 0)
+      report.notes.push_back(
+          fmt::format("{} particles with NaN or infinite positions are left out", particles->dropped_non_finite));
+    report.notes.insert(report.notes.end(), particles->notes.begin(), particles->notes.end());
+    settings_->view = view_of(survey_, picture_, index, count, options_.video.frames_per_second);
+    FramePicture frame = render_frame(*particles, *settings_);
+    report.particles = frame.particles;
+    report.width = frame.picture.width();
+    report.height = frame.picture.height();
+    report.times.add(frame.times);
+    const StageTimer timer(&report.times, "write");
+    writing_ = true;
+    write(report.output, frame);
+    writing_ = false;
+  }
+
+  void write(const std::string& path, FramePicture& frame) {
+    switch (target_.format()) {
+      case PictureFormat::png:
+        write_png(path, frame.picture);
+        break;
+      case PictureFormat::exr:
+        write_layers(path, frame, settings_->view, options_.layers);
+        break;
+      case PictureFormat::mp4:
+        if (!film_) film_.emplace(path, frame.picture.width(), frame.picture.height(), options_.video);
+        film_->add(frame.picture);
+        last_picture_ = std::move(frame.picture);
+        break;
+    }
+  }
+
+  const Survey& survey_;
+  const PictureOptions& picture_;
+  const SequenceOptions& options_;
+  OutputTarget target_;
+  std::optional<FrameSettings> settings_;
+  std::optional<VideoWriter> film_;
+  Image<Rgb8> last_picture_;
+  std::exception_ptr first_error_;
+  bool writing_ = false;
+};
+
+}  // namespace
+
+void check_output(const FrameSequence& sequence, const SequenceOptions& options) {
+  check(OutputTarget(options.output), shots_of(sequence, options.turntable).size());
+}
+
+SequenceReport render_sequence(const FrameSequence& sequence, const Survey& survey, const PictureOptions& picture,
+                               const SequenceOptions& options,
+                               FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame) {
+  return SequenceRun(survey, picture, options).run(shots_of(sequence, options.turntable), on_frame);
+}
+
+SequenceReport render_files(std::span<const std::string> what, const std::string& output,
+                            const PictureOptions& picture) {
+  SequenceOptions options;
+  options.output = output;
+  const FrameSequence sequence = find_frames(what);
+  SurveyOptions wanted;
+  wanted.colour = picture.colour;
+  if (picture.surface.spacing > 0) wanted.spacing = picture.surface.spacing;
+  return render_sequence(sequence, survey_frames(sequence, wanted), picture, options);
+}
+
+}  // namespace meniscus

@@ -1,0 +1,174 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "meniscus/render.h"
+#include "render/antialias.h"
+
+namespace meniscus {
+namespace {
+
+PictureOptions small_picture() {
+  PictureOptions options;
+  options.width = 160;
+  options.height = 96;
+  return options;
+}
+
+FramePicture drawn(const Particles& particles, const PictureOptions& options) {
+  return render_frame(particles, settings_of(survey_particles(particles), options));
+}
+
+TEST(RenderFrame, GivesTheSameBitsWithOneTwoAndFiveThreads) {
+  const Particles tank = synthetic_tank(3000);
+  std::vector<FramePicture> pictures;
+  for (const int threads : {1, 2, 5}) {
+    const ThreadLimit limit(threads);
+    pictures.push_back(drawn(tank, small_picture()));
+  }
+  for (const FramePicture& other : {std::cref(pictures[1]), std::cref(pictures[2])}) {
+    EXPECT_TRUE(std::equal(other.radiance.begin(), other.radiance.end(), pictures[0].radiance.begin()));
+    EXPECT_TRUE(std::equal(other.picture.begin(), other.picture.end(), pictures[0].picture.begin()));
+  }
+}
+
+TEST(RenderFrame, DoesNotCareForTheOrderOfParticles) {
+  const Particles tank = synthetic_tank(3000);
+  std::vector<std::size_t> order(tank.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::shuffle(order.begin(), order.end(), std::mt19937(5));
+  Particles shuffled = tank;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    shuffled.x[i] = tank.x[order[i]];
+    shuffled.y[i] = tank.y[order[i]];
+    shuffled.z[i] = tank.z[order[i]];
+  }
+  EXPECT_GT(compare(drawn(tank, small_picture()).picture, drawn(shuffled, small_picture()).picture).psnr_db, 50);
+}
+
+/// The particles with x, y, z turned into y, z, x: a rigid turn about the diagonal.
+Particles turned(const Particles& particles) {
+  Particles result = particles;
+  result.x = particles.z;
+  result.y = particles.x;
+  result.z = particles.y;
+  result.up = Axis::z;
+  return result;
+}
+vec3 turned(vec3 p) { return {p.z, p.x, p.y}; }
+
+TEST(RenderFrame, DoesNotCareForTheAxesOfTheWorld) {
+  const Particles tank = synthetic_tank(3000);
+  PictureOptions options = small_picture();
+  options.sun_deg = vec2{90, 40};  // seen from +x where y is up ...
+  options.camera.eye = vec3{5, 3, 4};
+  options.camera.target = vec3{1, 0.6f, 1};
+  const Image<Rgb8> picture = drawn(tank, options).picture;
+  options.camera.eye = turned(*options.camera.eye);
+  options.camera.target = turned(*options.camera.target);
+  options.sun_deg = vec2{180, 40};  // ... and from +y where z is up
+  EXPECT_GT(compare(picture, drawn(turned(tank), options).picture).psnr_db, 50);
+}
+
+TEST(RenderFrame, AnEmptyFrameIsTheSceneWithoutWater) {
+  const FramePicture frame = drawn(Particles{}, small_picture());
+  EXPECT_EQ(frame.picture.width(), 160);
+  EXPECT_TRUE(
+      std::all_of(frame.buffers.coverage.begin(), frame.buffers.coverage.end(), [](float c) { return c == 0; }));
+  EXPECT_TRUE(
+      std::all_of(frame.radiance.begin(), frame.radiance.end(), [](vec3 c) { return std::isfinite(c.x + c.y + c.z); }));
+}
+
+std::size_t covered(const FramePicture& frame) {
+  return static_cast<std::size_t>(
+      std::count_if(frame.buffers.coverage.begin(), frame.buffers.coverage.end(), [](float c) { return c > 0; }));
+}
+
+TEST(RenderFrame, OneParticleTwoAndManyInOnePointAreSeen) {
+  for (const std::size_t count : {1u, 2u, 500u}) {
+    Particles particles;
+    particles.x.assign(count, 0.3f);
+    particles.y.assign(count, 0.1f);
+    particles.z.assign(count, -0.2f);
+    if (count == 2) particles.x[1] += 0.1f;
+    const FramePicture frame = drawn(particles, small_picture());
+    EXPECT_GT(covered(frame), 20u) << count;
+  }
+}
+
+TEST(RenderFrame, EveryAntialiasingShowsTheSameScene) {
+  const Particles tank = synthetic_tank(3000);
+  PictureOptions options = small_picture();
+  const Image<Rgb8> edges = drawn(tank, options).picture;
+  options.antialias = Antialias::full;
+  const FramePicture full = drawn(tank, options);
+  EXPECT_EQ(full.picture.width(), 160);
+  EXPECT_EQ(full.buffers.depth.width(), 160);
+  options.antialias = Antialias::off;
+  const Image<Rgb8> off = drawn(tank, options).picture;
+  // Smoothed outlines are nearer to the supersampled picture than raw ones.
+  const double with_edges = compare(edges, full.picture).psnr_db, without = compare(off, full.picture).psnr_db;
+  EXPECT_GT(with_edges, without + 0.5);
+  EXPECT_GT(with_edges, 25);
+}
+
+TEST(RenderFrame, OutlinesHaveFractionsOfCoverage) {
+  const FramePicture frame = drawn(synthetic_tank(3000), small_picture());
+  const auto fractions = std::count_if(frame.buffers.coverage.begin(), frame.buffers.coverage.end(),
+                                       [](float c) { return c > 0.02f && c < 0.98f; });
+  EXPECT_GT(fractions, 50);
+}
+
+TEST(RenderFrame, ColoursFollowTheAttributeAndItsRange) {
+  Particles tank = synthetic_tank(3000);
+  tank.attributes.push_back({"height", 1, tank.y});
+  PictureOptions options = small_picture();
+  options.colour = ColourBy{"height", Colormap::grey, {}};
+  SurveyOptions survey_options;
+  survey_options.colour = options.colour;
+  const Survey survey = survey_particles(tank, survey_options);
+  const auto [low, high] = std::minmax_element(tank.y.begin(), tank.y.end());
+  ASSERT_TRUE(survey.colour_range);
+  EXPECT_FLOAT_EQ(survey.colour_range->first, *low);
+  EXPECT_FLOAT_EQ(survey.colour_range->second, *high);
+  const FramePicture frame = render_frame(tank, settings_of(survey, options));
+  EXPECT_FALSE(frame.buffers.colour.empty());
+  options.colour->attribute = "colour_of_music";
+  EXPECT_THROW(render_frame(tank, settings_of(survey, options)), Error);
+}
+
+TEST(SilhouettePixels, AreThoseAtTheBorderOfTheWaterAndWhereItFolds) {
+  const View view = orthographic_view({0, 0, 5}, vec3{0}, {0, 1, 0}, 10, 10, 10);
+  SurfaceBuffers seen;
+  seen.coverage = Image<float>(10, 10);
+  seen.depth = Image<float>(10, 10, std::numeric_limits<float>::infinity());
+  seen.normal = Image<vec3>(10, 10);
+  for (int y = 0; y < 10; ++y)
+    for (int x = 3; x < 10; ++x) {
+      seen.coverage(x, y) = 1;
+      seen.depth(x, y) = x < 6 ? 4.0f : 1.0f;
+      seen.normal(x, y) = {0, 0, 1};
+    }
+  std::vector<std::uint32_t> expected;
+  for (std::uint32_t y = 0; y < 10; ++y)
+    for (const std::uint32_t x : {2u, 3u, 5u, 6u}) expected.push_back(10 * y + x);
+  EXPECT_EQ(silhouette_pixels(view, seen, 0.5f), expected);
+}
+
+TEST(SilhouettePixels, ASlopeIsNone) {
+  // A plane at 60 degrees to the rays: its depth changes by 1.7 pixels from pixel to pixel.
+  const View view = orthographic_view({0, 0, 5}, vec3{0}, {0, 1, 0}, 10, 10, 10);
+  SurfaceBuffers seen;
+  seen.coverage = Image<float>(10, 10, 1.0f);
+  seen.depth = Image<float>(10, 10);
+  seen.normal = Image<vec3>(10, 10, vec3{-std::sqrt(0.75f), 0, 0.5f});
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 10; ++x) seen.depth(x, y) = 20 - 1.732f * static_cast<float>(x);
+  EXPECT_TRUE(silhouette_pixels(view, seen, 0.01f).empty());
+}
+
+}  // namespace
+}  // namespace meniscus
