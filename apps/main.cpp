@@ -1,1 +1,3 @@
-int main() { return 0; }
+#include "commands.h"
+
+int main(int argc, char** argv) { return meniscus::apps::run(argc, argv); }

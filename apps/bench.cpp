@@ -1,0 +1,11 @@
+#include "commands.h"
+
+namespace meniscus::apps {
+
+void add_bench(CLI::App& program) {
+  CLI::App* bench = program.add_subcommand("bench", "Measure stages on made-up scenes");
+  bench->require_subcommand(1);
+  add_bench_raycast(*bench);
+}
+
+}  // namespace meniscus::apps

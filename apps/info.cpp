@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <iostream>
+#include <memory>
+
+#include "commands.h"
+#include "json.h"
+#include "meniscus/render.h"
+#include "picture_options.h"
+
+namespace meniscus::apps {
+namespace {
+
+struct InfoArguments {
+  InputOptions input;
+  bool json = false;
+};
+
+/// One frame as it was read, or why it was not.
+struct FrameInfo {
+  std::string path;
+  Particles particles;
+  Survey survey;
+  std::string problem;
+};
+
+std::vector<std::string> attribute_names(const Particles& particles) {
+  std::vector<std::string> names;
+  for (const Attribute& a : particles.attributes)
+    names.push_back(a.components == 1 ? a.name : fmt::format("{}[{}]", a.name, a.components));
+  return names;
+}
+
+Json frame_json(const FrameInfo& frame, const PictureOptions& options) {
+  Json json;
+  json["path"] = frame.path;
+  if (!frame.problem.empty()) {
+    json["error"] = frame.problem;
+    return json;
+  }
+  const Particles& particles = frame.particles;
+  json["format"] = particles.format;
+  json["particles"] = particles.size();
+  json["attributes"] = Json::array();
+  for (const Attribute& attribute : particles.attributes) json["attributes"].push_back(attribute.name);
+  const Bounds bounds = particles.bounds();
+  json["bounds"] = bounds.empty() ? Json() : Json::array({json_of(bounds.low), json_of(bounds.high)});
+  const float spacing = frame.survey.spacing.spacing;
+  json["spacing"] = json_of(spacing);
+  json["radius"] = json_of(spacing / 2);
+  json["smoothing_length"] =
+      json_of(options.surface.smoothing_length > 0 ? options.surface.smoothing_length : 2 * spacing);
+  json["up"] = std::string(name_of(frame.survey.up.axis));
+  json["time"] = particles.time ? Json(*particles.time) : Json();
+  json["dropped_non_finite"] = particles.dropped_non_finite;
+  json["notes"] = particles.notes;
+  json["reasoning"] = {{"spacing", frame.survey.spacing.reasoning}, {"up", frame.survey.up.reasoning}};
+  return json;
+}
+
+Json guess_json(const Guess& guess) {
+  return {{"what", guess.what}, {"value", guess.value}, {"reasoning", guess.reasoning}, {"option", guess.option}};
+}
+
+void print(const FrameInfo& frame) {
+  if (!frame.problem.empty()) return;  // told on stderr
+  const Particles& particles = frame.particles;
+  const Bounds bounds = particles.bounds();
+  std::cout << fmt::format("{}\n  {} particles, {}", frame.path, particles.size(), particles.format);
+  if (particles.time) std::cout << fmt::format(", t = {:.6g} s", *particles.time);
+  std::cout << '\n';
+  if (!bounds.empty())
+    std::cout << fmt::format("  from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m, spacing {:.4g} m\n",
+                             bounds.low.x, bounds.low.y, bounds.low.z, bounds.high.x, bounds.high.y, bounds.high.z,
+                             frame.survey.spacing.spacing);
+  if (!particles.attributes.empty())
+    std::cout << fmt::format("  attributes: {}\n", fmt::join(attribute_names(particles), ", "));
+  if (particles.dropped_non_finite > 0)
+    std::cout << fmt::format("  {} particles with NaN or infinite positions are left out\n",
+                             particles.dropped_non_finite);
+  for (const std::string& note : particles.notes) std::cout << "  " << note << '\n';
+}
+
+void print(const Guess& guess) {
+  std::cout << fmt::format("  {:<17} {}\n  {:<17}   {}\n  {:<17}   set with {}\n", guess.what, guess.value, "",
+                           guess.reasoning, "", guess.option);
+}
+
+FrameInfo read(const std::string& path, const SurveyOptions& options) {
+  FrameInfo frame;
+  frame.path = path;
+  try {
+    frame.particles = read_particles(path);
+    frame.survey = survey_particles(frame.particles, options);
+  } catch (const Error& error) {
+    if (options.strict) throw;
+    frame.problem = error.what();
+    std::cerr << "meniscus: error: " << frame.problem << '\n';
+  }
+  return frame;
+}
+
+void info(const InfoArguments& arguments) {
+  const FrameSequence sequence = arguments.input.find(arguments.json);
+  const SurveyOptions survey_options = arguments.input.survey_options();
+  PictureOptions options;
+  options.surface.spacing = arguments.input.spacing.value_or(0.0f);
+  options.surface.smoothing_length = arguments.input.smoothing_length.value_or(0.0f);
+
+  Json frames = Json::array();
+  std::size_t failed = 0;
+  for (const FramePath& path : sequence.frames) {
+    const FrameInfo frame = read(path.path, survey_options);
+    failed += frame.problem.empty() ? 0 : 1;
+    if (arguments.json)
+      frames.push_back(frame_json(frame, options));
+    else
+      print(frame);
+  }
+
+  // What the pictures of the sequence would have in common.
+  std::vector<Guess> guesses;
+  if (failed < sequence.frames.size()) guesses = guesses_of(survey_frames(sequence, survey_options), options);
+  if (arguments.json) {
+    Json json;
+    json["frames"] = std::move(frames);
+    json["guesses"] = Json::array();
+    for (const Guess& guess : guesses) json["guesses"].push_back(guess_json(guess));
+    json["notes"] = sequence.notes;
+    std::cout << text_of(json, 2) << '\n';
+  } else if (!guesses.empty()) {
+    std::cout << (sequence.frames.size() > 1 ? fmt::format("For all {} frames\n", sequence.frames.size())
+                                             : "Guesses\n");
+    for (const Guess& guess : guesses) print(guess);
+  }
+  if (failed > 0) throw CLI::RuntimeError(kFailed);
+}
+
+}  // namespace
+
+void add_info(CLI::App& program) {
+  CLI::App* command =
+      program.add_subcommand("info", "Tell what is in frames of particles, and what is guessed from it");
+  const auto arguments = std::make_shared<InfoArguments>();
+  arguments->input.add_to(*command);
+  command->add_flag("--json", arguments->json, "Print one JSON object");
+  command->footer("Exits with 1 if one of the frames cannot be read.");
+  command->callback([arguments] { info(*arguments); });
+}
+
+}  // namespace meniscus::apps

@@ -1,0 +1,109 @@
+#include "parse.h"
+
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "commands.h"
+
+namespace meniscus::apps {
+namespace {
+
+[[noreturn]] void refuse(std::string_view option, std::string_view text, std::string_view expected) {
+  throw UsageError(fmt::format("{}: {} was expected, not '{}'", option, expected, text));
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t at = text.find(separator);
+    parts.push_back(text.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    text.remove_prefix(at + 1);
+  }
+}
+
+bool read(std::string_view text, float& value) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  const auto result = fast_float::from_chars(text.data(), text.data() + text.size(), value);
+  return result.ec == std::errc() && result.ptr == text.data() + text.size() && std::isfinite(value);
+}
+
+template <class Integer>
+bool read_integer(std::string_view text, Integer& value) {
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  return result.ec == std::errc() && result.ptr == text.data() + text.size();
+}
+
+}  // namespace
+
+PictureSize parse_size(std::string_view option, std::string_view text) {
+  const auto parts = split(text, 'x');
+  PictureSize size;
+  const auto fits = [](int n) { return n >= 1 && n <= 16384; };
+  if (parts.size() != 2 || !read_integer(parts[0], size.width) || !read_integer(parts[1], size.height) ||
+      !fits(size.width) || !fits(size.height))
+    refuse(option, text, "WIDTHxHEIGHT, each 1 to 16384 pixels,");
+  return size;
+}
+
+glm::vec3 parse_vec3(std::string_view option, std::string_view text) {
+  const auto parts = split(text, ',');
+  glm::vec3 v{0};
+  if (parts.size() != 3 || !read(parts[0], v.x) || !read(parts[1], v.y) || !read(parts[2], v.z))
+    refuse(option, text, "three numbers with commas between");
+  return v;
+}
+
+glm::vec2 parse_vec2(std::string_view option, std::string_view text) {
+  const auto parts = split(text, ',');
+  glm::vec2 v{0};
+  if (parts.size() != 2 || !read(parts[0], v.x) || !read(parts[1], v.y))
+    refuse(option, text, "two numbers with a comma between");
+  return v;
+}
+
+std::pair<float, float> parse_range(std::string_view option, std::string_view text) {
+  const auto parts = split(text, ':');
+  std::pair<float, float> range{};
+  if (parts.size() != 2 || !read(parts[0], range.first) || !read(parts[1], range.second) ||
+      !(range.first < range.second))
+    refuse(option, text, "LOW:HIGH, LOW less than HIGH,");
+  return range;
+}
+
+FrameSelection parse_selection(std::string_view option, std::string_view text) {
+  const char* expected = "N or FROM:TO:STEP, STEP at least 1,";
+  const auto parts = split(text, ':');
+  FrameSelection selection;
+  long long number = 0;
+  if (parts.size() == 1) {
+    if (!read_integer(parts[0], number) || number < 1) refuse(option, text, expected);
+    selection.first_n = number;
+    return selection;
+  }
+  if (parts.size() > 3) refuse(option, text, expected);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].empty()) continue;
+    if (!read_integer(parts[i], number)) refuse(option, text, expected);
+    if (i == 0) selection.begin = number;
+    if (i == 1) selection.end = number;
+    if (i == 2) selection.step = number;
+  }
+  if (selection.step < 1) refuse(option, text, expected);
+  return selection;
+}
+
+std::pair<std::size_t, std::size_t> bounds_of(const FrameSelection& selection, std::size_t count) {
+  const auto n = static_cast<long long>(count);
+  const auto place = [&](long long at) { return std::clamp(at < 0 ? at + n : at, 0LL, n); };
+  const long long begin = selection.first_n ? 0 : place(selection.begin.value_or(0));
+  const long long end = selection.first_n ? std::min(*selection.first_n, n) : place(selection.end.value_or(n));
+  return {static_cast<std::size_t>(begin), static_cast<std::size_t>(std::max(begin, end))};
+}
+
+}  // namespace meniscus::apps

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "commands.h"
+#include "json.h"
+#include "meniscus/render.h"
+#include "picture_options.h"
+#include "progress.h"
+
+namespace meniscus::apps {
+namespace {
+
+struct RenderArguments {
+  InputOptions input;
+  PictureArguments picture;
+  SequenceOptions sequence;
+  std::string report_path;
+  bool quiet = false;
+  int threads = 0;
+};
+
+void check_layers(const std::vector<std::string>& layers) {
+  const std::vector<std::string> known = layer_names();
+  for (const std::string& layer : layers)
+    if (std::find(known.begin(), known.end(), layer) == known.end())
+      throw UsageError(fmt::format(
+          "--layers: radiance, depth, normal, thickness, coverage or colour was expected, not '{}'", layer));
+}
+
+/// N pictures of one frame, if the camera moves.
+std::size_t turntable_of(const RenderArguments& arguments, const PictureOptions& picture) {
+  const bool moves = picture.camera.orbit_deg != 0 || picture.path;
+  return moves && arguments.input.selection.first_n ? static_cast<std::size_t>(*arguments.input.selection.first_n) : 0;
+}
+
+void render(RenderArguments& arguments) {
+  // All that can be wrong with the arguments shows before the work.
+  check_layers(arguments.sequence.layers);
+  static_cast<void>(OutputTarget(arguments.sequence.output));
+  PictureOptions picture = arguments.picture.options(arguments.input);
+  if (!picture.material.empty()) static_cast<void>(material_preset(picture.material, 1.0f));
+  const FrameSequence sequence = arguments.input.find(arguments.quiet);
+  arguments.sequence.strict = arguments.input.strict;
+  arguments.sequence.turntable = turntable_of(arguments, picture);
+  check_output(sequence, arguments.sequence);
+  if (!arguments.report_path.empty()) write_text(arguments.report_path, "{}\n");
+
+  const ThreadLimit limit(arguments.threads);
+  Progress progress(arguments.quiet);
+  SurveyOptions survey_options = arguments.input.survey_options();
+  survey_options.colour = picture.colour;
+  auto on_surveyed = [&](std::size_t done, std::size_t count) { progress.surveyed(done, count); };
+  FunctionRef<void(std::size_t, std::size_t)> surveyed(on_surveyed);
+  const Survey survey = survey_frames(sequence, survey_options, &surveyed);
+  if (!arguments.quiet)
+    for (const std::string& note : survey.notes) std::cerr << "meniscus: " << note << '\n';
+
+  auto on_drawn = [&](const FrameReport& frame, std::size_t index, std::size_t count) {
+    progress.drawn(frame, index, count);
+  };
+  FunctionRef<void(const FrameReport&, std::size_t, std::size_t)> drawn(on_drawn);
+  const SequenceReport report = render_sequence(sequence, survey, picture, arguments.sequence, &drawn);
+  progress.finish();
+
+  if (!arguments.report_path.empty()) write_text(arguments.report_path, text_of(json_of(report), 2) + "\n");
+  if (arguments.quiet) return;
+  if (report.drawn > 0) std::cout << timing_table(report);
+  std::cout << fmt::format("{} drawn, {} there already, {} left out: {}\n", report.drawn, report.skipped, report.failed,
+                           arguments.sequence.output);
+}
+
+void add_output(CLI::App& command, RenderArguments& arguments) {
+  const char* group = "Output";
+  SequenceOptions& sequence = arguments.sequence;
+  command
+      .add_option("-o,--output", sequence.output,
+                  "A .png, .exr or .mp4 file, or a pattern with {} or {:04} for the frame number")
+      ->required()
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--fps", sequence.video.frames_per_second, "Frames a second of a film (default: 25)")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->group(group);
+  command.add_option("--quality", sequence.video.quality_crf, "Of a film: 0 lossless to 51 worst (default: 18)")
+      ->type_name("CRF")
+      ->check(CLI::Range(0, 51))
+      ->group(group);
+  command.add_flag("--resume", sequence.resume, "Leave pictures and films that are there already as they are")
+      ->group(group);
+  command
+      .add_option("--layers", sequence.layers,
+                  "Layers of an EXR file: radiance, depth, normal, thickness, coverage, colour (default: all)")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->expected(1)
+      ->group(group);
+  command.add_option("--report", arguments.report_path, "Write times and memory of every frame into a JSON file")
+      ->type_name("FILE.json")
+      ->group(group);
+  command.add_flag("--quiet", arguments.quiet, "Say nothing but errors")->group(group);
+  command.add_option("--threads", arguments.threads, "Threads; 0: one a core (default: 0)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--instruction-set", [](const std::string& name) { use_instruction_set(name); },
+          "Vector instructions to use, such as avx3, avx2, sse4 or best (default: best); the picture is the same")
+      ->type_name("NAME")
+      ->group(group);
+}
+
+}  // namespace
+
+void add_render(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("render", "Draw pictures or a film of the water");
+  const auto arguments = std::make_shared<RenderArguments>();
+  arguments->input.add_to(*command);
+  arguments->picture.add_to(*command);
+  add_output(*command, *arguments);
+  command->footer(
+      "Examples:\n"
+      "  meniscus render frames/ -o film.mp4\n"
+      "  meniscus render 'sim_*.vtk' -o pictures/{:04}.png --size 1920x1080 --resume\n"
+      "  meniscus render frame_100.bgeo -o turn.mp4 --orbit 360 --frames 120\n"
+      "  meniscus render frames/ -o film.mp4 --color-by velocity --range 0:3 --legend");
+  command->callback([arguments] { render(*arguments); });
+}
+
+}  // namespace meniscus::apps

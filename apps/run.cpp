@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "commands.h"
+#include "meniscus/base.h"
+
+namespace meniscus::apps {
+namespace {
+
+int failed(int code, std::string message) {
+  for (char& c : message)
+    if (c == '\n') c = ' ';
+  std::cout.flush();
+  std::cerr << "meniscus: error: " << message << std::endl;
+  return code;
+}
+
+/// Which command's help answers an error.
+std::string command_path(const CLI::App& program) {
+  std::string path = "meniscus";
+  const CLI::App* app = &program;
+  while (!app->get_subcommands().empty()) {
+    app = app->get_subcommands().front();
+    path += " " + app->get_name();
+  }
+  return path;
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  CLI::App program("Pictures and films of water from the particles of a simulation", "meniscus");
+  program.set_version_flag("--version", "meniscus " MENISCUS_VERSION, "Print the version and exit");
+  program.set_help_flag("-h,--help", "Print this and exit");
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(40);
+  add_info(program);
+  add_render(program);
+  add_simulate(program);
+  add_bench(program);
+  add_compare(program);
+  program.footer(
+      "Exit codes: 0 done, 1 the run failed, 2 the arguments cannot be meant.\n"
+      "Each command has its own --help.");
+  try {
+    program.parse(argc, argv);
+    return kSuccess;
+  } catch (const CLI::Success& help) {  // --help and --version
+    return program.exit(help);
+  } catch (const CLI::RuntimeError& end) {
+    return end.get_exit_code();
+  } catch (const CLI::Error& error) {
+    return failed(kWrongUsage, fmt::format("{} (see {} --help)", error.what(), command_path(program)));
+  } catch (const UsageError& error) {
+    return failed(kWrongUsage, error.what());
+  } catch (const Error& error) {
+    return failed(error.code() == ErrorCode::invalid_argument ? kWrongUsage : kFailed, error.what());
+  } catch (const std::bad_alloc&) {
+    return failed(kFailed, "there is not enough memory");
+  } catch (const std::exception& error) {
+    return failed(kFailed, error.what());
+  }
+}
+
+}  // namespace meniscus::apps
