@@ -1,0 +1,162 @@
+#include "shading/sample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "meniscus/formulas/optics.h"
+
+namespace meniscus {
+namespace {
+
+using formulas::Interface;
+
+constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// The least cosine between normal and direction to the eye.
+constexpr float kLeastCosine = 0.02f;
+/// The sun's image is at least this wide, rad^2: its true width falls between pixels.
+constexpr float kLeastGlareVariance = 1.2e-4f;
+/// And at most this bright, in radiances of a white ground or so: brighter spots show every stair of an edge.
+constexpr float kBrightestGlare = 24.0f;
+
+float maximum(vec3 v) { return std::max(v.x, std::max(v.y, v.z)); }
+
+/// Light that a small volume or a diffuse surface of albedo one throws back, by sky and sun.
+/// @param wrap  0: a surface; more: light comes round into the shadow, as in a scattering medium
+vec3 diffuse_light(const Environment& environment, vec3 normal, float wrap) {
+  const float facing_sun = (glm::dot(normal, environment.sun_direction()) + wrap) / (1.0f + wrap);
+  return kPerPi * (environment.irradiance(normal) + std::max(0.0f, facing_sun) * environment.sun_irradiance());
+}
+
+vec3 soft_capped(vec3 glare) {
+  const float peak = maximum(glare);
+  return peak > 0 ? glare * (kBrightestGlare / (kBrightestGlare + peak)) : glare;
+}
+
+/// What a mirror of the sample's normal and the material's roughness shows: ground, sky and sun.
+vec3 mirror_image(const Sample& sample, vec3 point, const Scene& scene, const Material& material) {
+  const vec3 direction = glm::normalize(formulas::mirrored(sample.ray.direction, sample.normal));
+  // A mirror turns by twice the angle of its normal; roughness adds its own cone.
+  const float cone = 0.8f * material.roughness * material.roughness;
+  const float slopes = 2.0f * std::sqrt(sample.normal_variance);
+  const Beam beam{sample.beam.width + sample.beam.spread * sample.depth, sample.beam.spread + slopes + 2.0f * cone};
+  const float variance = cone * cone + 0.25f * slopes * slopes;
+  const float roughness = variance > 1e-6f ? std::sqrt(std::sqrt(variance) / 0.8f) : 0.0f;
+  vec3 image = scene.radiance({point, direction}, beam, std::min(roughness, 1.0f));
+  const Environment& environment = scene.environment();
+  if (glm::dot(sample.normal, environment.sun_direction()) > 0)
+    image += soft_capped(environment.sun_glare(direction, variance + kLeastGlareVariance));
+  return image;
+}
+
+/// Light of `behind` that is left after `path` m of the medium, with what the medium scatters into the way.
+vec3 through_medium(vec3 behind, float path, const Material& material, vec3 light) {
+  const vec3 sigma_t = material.extinction + material.scattering;
+  const vec3 left = formulas::beer_lambert(sigma_t, path);
+  // Single scattering under even light: integral of sigma_s exp(-sigma_t s) over the path.
+  const vec3 albedo = material.scattering / glm::max(sigma_t, vec3{1e-20f});
+  return behind * left + material.body * light * albedo * (1.0f - left);
+}
+
+}  // namespace
+
+vec3 facing(vec3 normal, vec3 direction) {
+  const float length = glm::dot(normal, normal);
+  if (!(length > 1e-12f) || !(length < 1e12f)) return -direction;
+  normal /= std::sqrt(length);
+  const float along = glm::dot(normal, direction);
+  if (along <= -kLeastCosine) return normal;
+  // Keep the tangential part, set the part along the ray.
+  const vec3 tangential = normal - along * direction;
+  const float rest = glm::dot(tangential, tangential);
+  if (!(rest > 1e-8f)) return -direction;
+  return tangential * std::sqrt((1.0f - kLeastCosine * kLeastCosine) / rest) - kLeastCosine * direction;
+}
+
+Material tinted(const Material& material, vec3 colour) {
+  Material result = material;
+  const auto channel = [](float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; };
+  const vec3 valid{channel(colour.x), channel(colour.y), channel(colour.z)};
+  result.body = valid;
+  if (!material.transparent) return result;
+  // The colour is what is left of white light after the depth over which the material itself tints; half of what is
+  // lost is scattered, so that coloured liquids have a body.
+  const float strength = maximum(material.extinction + material.scattering);
+  result.extinction = -0.5f * strength * glm::log(glm::max(valid, vec3{0.02f}));
+  result.scattering = glm::max(vec3{0.6f * strength}, material.scattering);
+  return result;
+}
+
+vec3 transparent_radiance(const Sample& sample, const Scene& scene, const Material& material) {
+  const vec3 direction = sample.ray.direction;
+  const vec3 point = sample.ray.origin + sample.depth * direction;
+  const float cos_i = -glm::dot(direction, sample.normal);
+  const Interface interface = formulas::fresnel(cos_i, material.ior);
+  const float reflectance = std::min(1.0f, interface.reflectance * material.specular);
+
+  // Thickness was measured along the straight ray; between two parallel faces the refracted ray takes a shorter way.
+  // Water that stands on the ground ends there.
+  const vec3 inside = formulas::refracted(direction, sample.normal, material.ior, interface.cos_t);
+  float path = sample.thickness * cos_i / interface.cos_t;
+  const float to_ground = scene.ground_distance({point, inside});
+  const bool on_ground = to_ground <= path;
+  if (on_ground) path = to_ground;
+
+  // Through the far side the ray goes on as it is.
+  const float slopes = (1.0f - 1.0f / material.ior) * std::sqrt(sample.normal_variance);
+  const Beam beam{sample.beam.width + sample.beam.spread * (sample.depth + path) + slopes * path,
+                  sample.beam.spread + slopes};
+  const Ray onward{on_ground ? point : point + path * inside, inside};
+  const vec3 behind = scene.radiance(onward, beam);
+  const vec3 light = diffuse_light(scene.environment(), sample.normal, 0.5f);
+  const vec3 transmitted = through_medium(behind, path, material, light);
+  if (reflectance <= 0) return transmitted;
+  return glm::mix(transmitted, mirror_image(sample, point, scene, material), reflectance);
+}
+
+vec3 opaque_radiance(const Sample& sample, const Scene& scene, const Material& material) {
+  const vec3 diffuse = material.body * diffuse_light(scene.environment(), sample.normal, 0.0f);
+  if (!(material.specular > 0)) return diffuse;
+  const float cos_i = -glm::dot(sample.ray.direction, sample.normal);
+  const float reflectance = std::min(1.0f, formulas::fresnel_reflectance(cos_i, material.ior) * material.specular);
+  const vec3 point = sample.ray.origin + sample.depth * sample.ray.direction;
+  return glm::mix(diffuse, mirror_image(sample, point, scene, material), reflectance);
+}
+
+vec3 deep_radiance(const Ray& ray, Beam beam, const Scene& scene, const Material& material) {
+  const vec3 light = diffuse_light(scene.environment(), scene.ground().up, 0.5f);
+  const float to_ground = scene.ground_distance(ray);
+  // An endless path through a channel that neither absorbs nor scatters shows what is behind.
+  const float path = to_ground < kInfinity ? to_ground : 1e30f;
+  return through_medium(scene.radiance(ray, beam), path, material, light);
+}
+
+vec3 window_radiance(const Sample& sample, const Scene& scene, const Material& material) {
+  const vec3 direction = sample.ray.direction;
+  // The ground may be nearer than the surface.
+  if (scene.ground_distance(sample.ray) <= sample.depth) return deep_radiance(sample.ray, sample.beam, scene, material);
+
+  const vec3 point = sample.ray.origin + sample.depth * direction;
+  const float eta = 1.0f / material.ior;
+  const Interface interface = formulas::fresnel(-glm::dot(direction, sample.normal), eta);
+  const Beam beam{sample.beam.width + sample.beam.spread * sample.depth,
+                  sample.beam.spread + 2.0f * std::sqrt(sample.normal_variance)};
+  vec3 seen =
+      deep_radiance({point, glm::normalize(formulas::mirrored(direction, sample.normal))}, beam, scene, material);
+  if (interface.reflectance < 1.0f) {
+    const vec3 outside = formulas::refracted(direction, sample.normal, eta, interface.cos_t);
+    vec3 sky = scene.radiance({point, outside}, beam, std::min(1.0f, material.roughness));
+    const float variance = 0.25f * sample.normal_variance + kLeastGlareVariance;
+    sky += soft_capped(scene.environment().sun_glare(outside, variance));
+    seen = glm::mix(sky, seen, interface.reflectance);
+  }
+  const vec3 light = diffuse_light(scene.environment(), scene.ground().up, 0.5f);
+  return through_medium(seen, sample.depth, material, light);
+}
+
+}  // namespace meniscus
