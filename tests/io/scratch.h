@@ -34,6 +34,8 @@ class Scratch {
   std::string write(const std::string& name, std::string_view bytes) const {
     const std::filesystem::path target = directory_ / name;
     std::filesystem::create_directories(target.parent_path());
+    // A new file each time: some file systems wait for the disk when an old one is cut to nothing and written anew.
+    std::filesystem::remove(target);
     std::ofstream file(target, std::ios::binary | std::ios::trunc);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     return target.string();
