@@ -30,7 +30,7 @@ class March {
       depth[l] = std::numeric_limits<float>::infinity();
       count_[l] = 0;
       at_[l] = entry_[l];
-      before_[l] = 0.0f;
+      before_[l] = earlier_[l] = 0.0f;
       if (((mask >> l) & 1u) && !(entry_[l] <= exit_[l])) mask &= ~(1u << l);
     }
     fresh_ = mask;
@@ -43,7 +43,7 @@ class March {
       PacketMask group = 0;
       for_each_lane(active_, [&](int l) { group |= at_[l] < last ? 1u << l : 0u; });
       gather_around(
-          group, [&](int l) { return (fresh_ >> l) & 1u ? at_[l] : at_[l] - field_.step; },
+          group, [&](int l) { return std::max(at_[l] - 2.0f * field_.step, entry_[l]); },
           [&](int l) { return std::min(last, exit_[l]); });
       if (list_.count == 0 && sign_ > 0)
         skip(group, last);
@@ -92,7 +92,7 @@ class March {
   void skip(PacketMask group, float last) {
     for_each_lane(group, [&](int l) {
       while (at_[l] < last && at_[l] <= exit_[l]) advance(l);
-      before_[l] = -field_.options.iso;
+      before_[l] = earlier_[l] = -field_.options.iso;
       if (at_[l] > exit_[l]) active_ &= ~(1u << l);
     });
   }
@@ -110,24 +110,59 @@ class March {
       });
       if (walking == 0) break;
       values_at(at_, values);
+      PacketMask summits = 0;
+      alignas(64) float summit[kPacket];
+      std::copy_n(at_, kPacket, summit);
       for_each_lane(walking, [&](int l) {
         if (values[l] < 0.0f) {
-          before_[l] = values[l];
-          advance(l);
+          if (count_[l] >= 2 && before_[l] > earlier_[l] && before_[l] > values[l]) {
+            const Summit found = summit_of(earlier_[l], before_[l], values[l]);
+            if (found.value > -kSummitMargin * field_.options.iso) {
+              summit[l] = at_[l] - field_.step + found.place * field_.step;
+              summits |= 1u << l;
+            }
+          }
         } else if ((fresh_ >> l) & 1u) {
           started_inside_ |= 1u << l;
           active_ &= ~(1u << l);
         } else {
           bracketed |= 1u << l;
-          low_t_[l] = at_[l] - field_.step;
-          low_value_[l] = before_[l];
-          high_t_[l] = at_[l];
-          high_value_[l] = values[l];
+          bracket(l, at_[l] - field_.step, before_[l], at_[l], values[l]);
         }
+      });
+      if (summits != 0) bracketed |= climb(summits, summit);
+      for_each_lane(walking & ~bracketed & active_, [&](int l) {
+        earlier_[l] = before_[l];
+        before_[l] = values[l];
+        advance(l);
       });
     }
     refine(bracketed, depth);
     active_ &= ~bracketed;
+  }
+
+  void bracket(int l, float low_t, float low_value, float high_t, float high_value) {
+    low_t_[l] = low_t;
+    low_value_[l] = low_value;
+    high_t_[l] = high_t;
+    high_value_[l] = high_value;
+  }
+
+  /// Looks at summits between the last samples; brackets the lanes that have crossed there, and tells which.
+  PacketMask climb(PacketMask lanes, const float* summit) {
+    alignas(64) float values[kPacket];
+    values_at(summit, values);
+    PacketMask crossed = 0;
+    for_each_lane(lanes, [&](int l) {
+      if (values[l] < 0.0f) return;
+      const float middle = at_[l] - field_.step;
+      if (summit[l] > middle)
+        bracket(l, middle, before_[l], summit[l], values[l]);
+      else
+        bracket(l, middle - field_.step, earlier_[l], summit[l], values[l]);
+      crossed |= 1u << l;
+    });
+    return crossed;
   }
 
   /// Where the line through the ends of the bracket is zero.
@@ -203,7 +238,7 @@ class March {
   PacketMask active_ = 0, fresh_ = 0, started_inside_ = 0;
   int count_[kPacket];
   alignas(64) float at_[kPacket];
-  float before_[kPacket];
+  float earlier_[kPacket], before_[kPacket];  ///< values of the last two samples
   float low_t_[kPacket], low_value_[kPacket], high_t_[kPacket], high_value_[kPacket];
 };
 

@@ -100,7 +100,7 @@ class RaycastSurface final : public Surface {
     if (field_.options.cull_interior) find_hidden_cells(field_);
     if (field_.options.keep_thin) find_masses();
     spheres_ = entry_spheres(field_);
-    thickness_radius_ = field_.options.spacing;
+    thickness_radius_ = thickness_radius(field_.options);
   }
 
   SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
@@ -130,6 +130,7 @@ class RaycastSurface final : public Surface {
           fine.exit[i] = std::max(fine.exit[i], coarse.exit(qx, qy));
         }
     }
+    if (points.empty()) return fine;
     find_surface(view, points, fine, times);
     if (!coarse.normal.empty()) take_filtered_normals(view, coarse, points, fine);
     if (!coarse.thickness.empty()) fine.thickness = sampled(coarse.thickness, points);
@@ -139,7 +140,7 @@ class RaycastSurface final : public Surface {
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "thickness");
     const ParticleGrid& grid = field_.grid;
-    // Each sphere counts for the water of one particle; spheres a spacing wide overlap into an even sheet.
+    // Each sphere counts for the water of one particle.
     const float s = field_.options.spacing, r = thickness_radius_;
     const float weight = s * s * s / (4.0f / 3.0f * 3.14159265f * r * r * r);
     const int stride = thickness_stride(view);

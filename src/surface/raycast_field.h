@@ -54,6 +54,26 @@ inline float entry_radius_at(const RaycastOptions& options, float density) {
   return std::min(options.spacing * loose * packed, options.smoothing_length);
 }
 
+/// Radius of the spheres that thickness is summed from, m; each counts for one particle's volume. At 1.25 spacings
+/// those of a lattice add up to an even sheet within a tenth along its axes and diagonals and within a twentieth
+/// along other directions; at one spacing they are off by half along the axes.
+inline float thickness_radius(const RaycastOptions& options) { return 1.25f * options.spacing; }
+
+/// A value that lies between two lower ones a step away from it on either side: where between them the parabola
+/// through the three is highest, and how high.
+struct Summit {
+  float place;  ///< steps from the middle one, in [-1/2, 1/2]
+  float value;
+};
+inline Summit summit_of(float before, float here, float after) {
+  const float fall = 2.0f * here - before - after;  // > 0
+  const float place = 0.5f * (after - before) / fall;
+  return {place, here + 0.25f * (after - before) * place};
+}
+/// Of the iso-value: how far below it a parabola's summit may lie for the density to be looked at there. Water thinner
+/// than a step is not missed then, and the rims of drops are round.
+constexpr float kSummitMargin = 0.25f;
+
 /// Fewer neighbours within the normal radius than this leave the gradient alone to tell the normal.
 constexpr int kFewestNeighboursForPca = 5;
 /// Below this ratio of the middle to the largest eigenvalue the neighbours form a line, which has no normal.

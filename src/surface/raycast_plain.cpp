@@ -78,8 +78,8 @@ class PlainRaycastSurface final : public Surface {
 
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "thickness");
-    const float r = field_.options.spacing;  // spheres of this radius, each of one particle's volume
-    const float weight = 1.0f / (4.0f / 3.0f * 3.14159265f);
+    const float s = field_.options.spacing, r = thickness_radius(field_.options);
+    const float weight = s * s * s / (4.0f / 3.0f * 3.14159265f * r * r * r);
     const std::vector<Ray> rays = rays_of(view, points);
     Image<float> sum(points.empty() ? view.width : static_cast<int>(points.size()), points.empty() ? view.height : 1);
     for (std::size_t i = 0; i < field_.grid.size(); ++i) {
@@ -200,13 +200,23 @@ class PlainRaycastSurface final : public Surface {
     const auto value_at = [&](float t) {
       return sign * (density_at(ray.origin + t * ray.direction) - field_.options.iso);
     };
-    float before = 0;
+    const float margin = -kSummitMargin * field_.options.iso;
+    float earlier = 0, before = 0;
     for (int n = 0;; ++n) {
       const float t = entry + static_cast<float>(n) * field_.step;
       if (t > exit) return kInfinity;
       const float value = value_at(t);
       if (value >= 0.0f)
         return n == 0 ? backwards(entry, value, value_at) : refined(t - field_.step, before, t, value, value_at);
+      if (n >= 2 && before > earlier && before > value) {
+        const Summit summit = summit_of(earlier, before, value);
+        const float middle = t - field_.step, at = middle + summit.place * field_.step;
+        const float highest = summit.value > margin ? value_at(at) : -1.0f;
+        if (highest >= 0.0f)
+          return summit.place > 0.0f ? refined(middle, before, at, highest, value_at)
+                                     : refined(middle - field_.step, earlier, at, highest, value_at);
+      }
+      earlier = before;
       before = value;
     }
   }
