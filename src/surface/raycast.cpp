@@ -210,6 +210,7 @@ class RaycastSurface final : public Surface {
     buffers.eye_in_water = starts_inside(view);
     if (!buffers.eye_in_water) {
       splat_depth(view, {spheres_.x, spheres_.y, spheres_.z, spheres_.radius}, buffers.entry, buffers.exit);
+      start_where_hidden(view, buffers);
       return buffers;
     }
     const Bounds box = bounds();
@@ -221,6 +222,28 @@ class RaycastSurface final : public Surface {
     buffers.entry = Image<float>(view.width, view.height, 0.0f);
     buffers.exit = Image<float>(view.width, view.height, farthest);
     return buffers;
+  }
+
+  /// Rays that start amidst hidden cells, in a bubble or on a plane through the water, are inside of no sphere that
+  /// was splatted: they march from their start.
+  void start_where_hidden(const View& view, SurfaceBuffers& buffers) const {
+    const ParticleGrid& grid = field_.grid;
+    const auto is_hidden = [&](vec3 at) {
+      const ParticleGrid::CellBox box = grid.cells(at, at);
+      return !box.empty() && field_.is_hidden(grid.cell_index(box.x0, box.y0, box.z0));
+    };
+    if (field_.hidden.empty()) return;
+    const bool perspective = view.projection == Projection::perspective;
+    const vec3 half = 0.5f * grid.bounds().extent(), forward = glm::abs(view.forward);
+    if (perspective ? !is_hidden(view.eye)
+                    : glm::dot(grid.bounds().centre() - view.eye, view.forward) > glm::dot(half, forward))
+      return;
+    parallel_for(static_cast<std::size_t>(view.height), 16, [&](std::size_t begin, std::size_t end) {
+      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+        for (int x = 0; x < view.width; ++x)
+          if (perspective || is_hidden(view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}).origin))
+            buffers.entry(x, y) = 0.0f;
+    });
   }
 
   /// Depth, normals and colours from the entries; all images as large as buffers.entry.

@@ -55,7 +55,7 @@ TEST(EyeInWater, AnywhereAboutATankShowsNoGarbage) {
 TEST(EyeInABubble, SeesTheBubblesWall) {
   // A hollow in the midst of well filled cells: the eye is not in water, and the wall is close.
   Particles particles;
-  const Particles box = lattice_box(30, 30, 30);
+  const Particles box = lattice_box(40, 40, 40);
   for (std::size_t i = 0; i < box.size(); ++i)
     if (glm::length(box.position(i)) > 2.2f * kSpacing) add(particles, box.position(i));
   const View view = perspective_view({0, 0, 0}, {1, 0.2f, 0.1f}, {0, 0, 1}, 1.2f, 48, 36);
@@ -70,7 +70,7 @@ TEST(EyeInABubble, SeesTheBubblesWall) {
 }
 
 TEST(ParallelRays, ThatStartInTheWaterMeetItAtOnce) {
-  const Particles particles = lattice_box(24, 24, 24);
+  const Particles particles = lattice_box(40, 40, 40);
   for (const bool cull : {true, false}) {
     RaycastOptions with = options();
     with.cull_interior = cull;
