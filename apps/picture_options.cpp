@@ -42,11 +42,8 @@ void PictureArguments::add_surface(CLI::App& command) {
   Group group(command, "Surface");
   RaycastOptions& surface = picture_.surface;
   group.text(
-      "--surface", "raycast",
-      [](const std::string& name) {
-        if (name != "raycast") throw UsageError("--surface: raycast was expected, not '" + name + "'");
-      },
-      "What represents the water (default: raycast, the only one of this version)");
+      "--surface", "NAME", [&](const std::string& name) { picture_.method = surface_method_of(name); },
+      "What represents the water: raycast, or spheres to see the particles themselves (default: raycast)");
   group.text(
       "--kernel", "NAME", [&](const std::string& name) { surface.kernel = kernel_of(name); },
       "Smoothing kernel: cubic_spline, poly6 or wyvill (default: cubic_spline)");
@@ -115,8 +112,11 @@ void PictureArguments::add_picture(CLI::App& command) {
       },
       "Size of the picture, px (default: 1280x720)");
   group.text(
+      "--show", "NAME", [&](const std::string& name) { picture_.show = show_of(name); },
+      "water, or one of the buffers behind it: normals, thickness, depth (default: water)");
+  group.text(
       "--material", "NAME", [&](const std::string& name) { picture_.material = name; },
-      fmt::format("{} (default: water; plastic with --color-by)", fmt::join(material_names(), ", ")));
+      fmt::format("{} (default: water; plastic with --color-by and for spheres)", fmt::join(material_names(), ", ")));
   group.text(
       "--extinction", "R,G,B", [&](const std::string& text) { picture_.extinction = parse_vec3("--extinction", text); },
       "Absorption in red, green and blue, 1/m (default: the material's, by the depth of the scene)");

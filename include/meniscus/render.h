@@ -28,9 +28,29 @@ enum class Antialias {
 /// "off", "edges" or "2x2". @throws Error invalid_argument
 Antialias antialias_of(std::string_view name);
 
+/// How the water is found in the particles.
+enum class SurfaceMethod {
+  raycast,  ///< the iso-surface of their density [Xiao2017]
+  spheres,  ///< not at all: one ball a particle, to look at the raw data
+};
+/// @throws Error invalid_argument
+SurfaceMethod surface_method_of(std::string_view name);
+
+/// What a picture shows.
+enum class Show {
+  water,      ///< the shaded scene
+  normals,    ///< the surface's normals as colours: (n + 1) / 2 in camera axes (right, up, towards the eye)
+  thickness,  ///< m of water along each ray through the colour map, up to the largest in the picture
+  depth,      ///< distance, near bright, far dark
+};
+/// @throws Error invalid_argument
+Show show_of(std::string_view name);
+
 /// Everything that one frame is drawn by. settings_of() fills it from guesses; or set what you like.
 struct FrameSettings {
   View view;
+  SurfaceMethod method = SurfaceMethod::raycast;
+  Show show = Show::water;
   RaycastOptions surface;          ///< spacing > 0 is required
   std::optional<ColourBy> colour;  ///< none: the material's own colour
   Material material;
@@ -161,8 +181,10 @@ GroundStyle ground_style_of(std::string_view name);
 
 /// Everything that a user may say about the picture; what is left alone is guessed from the survey.
 struct PictureOptions {
-  int width = 1280;        ///< px
-  int height = 720;        ///< px
+  int width = 1280;  ///< px
+  int height = 720;  ///< px
+  SurfaceMethod method = SurfaceMethod::raycast;
+  Show show = Show::water;
   RaycastOptions surface;  ///< spacing 0 and smoothing_length 0: from the survey
   int drop_isolated = 0;
   std::optional<ColourBy> colour;

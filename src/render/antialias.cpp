@@ -16,11 +16,11 @@ constexpr float kFoldCosine = 0.819f;         ///< of 35 degrees
 /// Whether two neighbouring pixels show different things.
 class Differ {
  public:
-  Differ(const View& view, const SurfaceBuffers& buffers, float spacing)
-      : view_(view), buffers_(buffers), spacing_(spacing) {}
+  Differ(const View& view, const SurfaceBuffers& buffers, const Image<std::uint8_t>& visible, float spacing)
+      : view_(view), buffers_(buffers), visible_(visible), spacing_(spacing) {}
 
   bool operator()(std::size_t a, std::size_t b, vec3 direction) const {
-    const bool water_a = buffers_.coverage[a] > 0, water_b = buffers_.coverage[b] > 0;
+    const bool water_a = visible_[a] != 0, water_b = visible_[b] != 0;
     if (water_a != water_b) return true;
     if (!water_a) return false;
     const float depth_a = buffers_.depth[a], depth_b = buffers_.depth[b];
@@ -39,17 +39,27 @@ class Differ {
  private:
   const View& view_;
   const SurfaceBuffers& buffers_;
+  const Image<std::uint8_t>& visible_;  ///< 1 where water is seen
   float spacing_;
 };
 
 }  // namespace
 
-std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, float spacing) {
+std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, const Scene& scene,
+                                             float spacing) {
   const Image<float>& coverage = buffers.coverage;
   const std::size_t width = static_cast<std::size_t>(coverage.width());
   const std::size_t height = static_cast<std::size_t>(coverage.height());
   Image<std::uint8_t> marked(coverage.width(), coverage.height());
-  const Differ differ(view, buffers, spacing);
+  Image<std::uint8_t> visible(coverage.width(), coverage.height());
+  parallel_for(height, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * width; i < end * width; ++i) {
+      if (!(coverage[i] > 0)) continue;
+      const Ray ray = view.ray({static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f});
+      visible[i] = buffers.eye_in_water || scene.ground_distance(ray) >= buffers.depth[i] ? 1 : 0;
+    }
+  });
+  const Differ differ(view, buffers, visible, spacing);
   // A row looks at its neighbours on all sides and marks its own pixels only.
   parallel_for(height, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)

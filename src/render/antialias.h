@@ -7,9 +7,11 @@
 
 namespace meniscus {
 
-/// Indices (row by row) of the pixels that differ from one of their four neighbours: in coverage; in depth, by more
-/// than two spacings beyond what the slope of the surface explains; or in normal, by more than 35 degrees.
-std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, float spacing);
+/// Indices (row by row) of the pixels that differ from one of their four neighbours: in coverage, or because the
+/// ground hides the water in one of them; in depth, by more than two spacings beyond what the slope of the surface
+/// explains; or in normal, by more than 35 degrees.
+std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, const Scene& scene,
+                                             float spacing);
 
 /// Draws those pixels anew as the average of 4 x 4 rays in each; coverage and thickness become means as well.
 void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,

@@ -2,6 +2,7 @@
 
 #include "meniscus/render.h"
 #include "render/antialias.h"
+#include "render/show.h"
 
 namespace meniscus {
 namespace {
@@ -56,7 +57,9 @@ FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
   }
 
   // The surface, and what of it is seen.
-  const std::unique_ptr<Surface> surface = make_raycast_surface(particles, surface_options, colours, times);
+  const std::unique_ptr<Surface> surface = settings.method == SurfaceMethod::spheres
+                                               ? make_sphere_surface(particles, 0.5f * surface_options.spacing, colours)
+                                               : make_raycast_surface(particles, surface_options, colours, times);
   frame.buffers = surface->see(view, {}, times);
 
   // Light.
@@ -66,7 +69,7 @@ FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
   // Outlines.
   if (settings.antialias == Antialias::edges) {
     const StageTimer timer(times, "antialias");
-    const std::vector<std::uint32_t> pixels = silhouette_pixels(view, frame.buffers, surface_options.spacing);
+    const std::vector<std::uint32_t> pixels = silhouette_pixels(view, frame.buffers, scene, surface_options.spacing);
     refine_pixels(*surface, view, scene, settings.material, pixels, frame.buffers, frame.radiance);
   } else if (full) {
     const StageTimer timer(times, "antialias");
@@ -76,7 +79,9 @@ FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
 
   // The picture.
   const StageTimer timer(times, "develop");
-  frame.picture = developed(frame.radiance, settings.tone);
+  if (settings.show != Show::water) frame.radiance = shown(settings.show, settings.view, frame.buffers);
+  frame.picture =
+      developed(frame.radiance, settings.show == Show::water ? settings.tone : ToneOptions{0, ToneCurve::linear});
   if (settings.legend && !colours.empty()) draw_colour_bar(frame, *settings.colour);
   return frame;
 }

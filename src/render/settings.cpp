@@ -56,7 +56,7 @@ Ground ground_of(const Survey& survey, const PictureOptions& options) {
 
 std::string material_name(const PictureOptions& options) {
   if (!options.material.empty()) return options.material;
-  return options.colour ? "plastic" : "water";
+  return options.colour || options.method == SurfaceMethod::spheres ? "plastic" : "water";
 }
 
 float spacing_of(const Survey& survey, const PictureOptions& options) {
@@ -72,13 +72,20 @@ float depth_scale(const Survey& survey, const PictureOptions& options) {
 float ground_height(const Survey& survey, const PictureOptions& options) {
   if (options.ground_height) return *options.ground_height;
   if (survey.bounds.empty()) return 0;
-  return glm::dot(survey.bounds.low, direction_of(survey.up.axis)) - 0.5f * spacing_of(survey, options);
+  return glm::dot(survey.bounds.low, direction_of(survey.up.axis)) + 0.25f * spacing_of(survey, options);
 }
 
 vec2 sun_deg(const Survey& survey, const PictureOptions& options) {
   if (options.sun_deg) return *options.sun_deg;
   const float camera = options.camera.azimuth_deg.value_or(default_azimuth_deg(survey.bounds, survey.up.axis));
   return {camera + 110.0f, 42.0f};
+}
+
+SurfaceMethod surface_method_of(std::string_view name) {
+  if (name == "raycast") return SurfaceMethod::raycast;
+  if (name == "spheres") return SurfaceMethod::spheres;
+  throw Error(ErrorCode::invalid_argument,
+              {"there is no such surface", "raycast or spheres", std::string(name), {}, {}, {}, {}});
 }
 
 GroundStyle ground_style_of(std::string_view name) {
@@ -92,6 +99,8 @@ GroundStyle ground_style_of(std::string_view name) {
 FrameSettings settings_of(const Survey& survey, const PictureOptions& options) {
   FrameSettings settings;
   settings.view = view_of(survey, options, 0, 1, 25);
+  settings.method = options.method;
+  settings.show = options.show;
   settings.surface = options.surface;
   settings.surface.spacing = spacing_of(survey, options);
   if (!(settings.surface.smoothing_length > 0)) settings.surface.smoothing_length = 2 * settings.surface.spacing;

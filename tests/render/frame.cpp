@@ -140,6 +140,12 @@ TEST(RenderFrame, ColoursFollowTheAttributeAndItsRange) {
   EXPECT_THROW(render_frame(tank, settings_of(survey, options)), Error);
 }
 
+Scene without_ground() {
+  Ground ground;
+  ground.visible = false;
+  return Scene(Environment(EnvironmentOptions{}), ground);
+}
+
 TEST(SilhouettePixels, AreThoseAtTheBorderOfTheWaterAndWhereItFolds) {
   const View view = orthographic_view({0, 0, 5}, vec3{0}, {0, 1, 0}, 10, 10, 10);
   SurfaceBuffers seen;
@@ -155,7 +161,7 @@ TEST(SilhouettePixels, AreThoseAtTheBorderOfTheWaterAndWhereItFolds) {
   std::vector<std::uint32_t> expected;
   for (std::uint32_t y = 0; y < 10; ++y)
     for (const std::uint32_t x : {2u, 3u, 5u, 6u}) expected.push_back(10 * y + x);
-  EXPECT_EQ(silhouette_pixels(view, seen, 0.5f), expected);
+  EXPECT_EQ(silhouette_pixels(view, seen, without_ground(), 0.5f), expected);
 }
 
 TEST(SilhouettePixels, ASlopeIsNone) {
@@ -167,7 +173,55 @@ TEST(SilhouettePixels, ASlopeIsNone) {
   seen.normal = Image<vec3>(10, 10, vec3{-std::sqrt(0.75f), 0, 0.5f});
   for (int y = 0; y < 10; ++y)
     for (int x = 0; x < 10; ++x) seen.depth(x, y) = 20 - 1.732f * static_cast<float>(x);
-  EXPECT_TRUE(silhouette_pixels(view, seen, 0.01f).empty());
+  EXPECT_TRUE(silhouette_pixels(view, seen, without_ground(), 0.01f).empty());
+}
+
+TEST(SilhouettePixels, FollowTheLineWhereTheGroundHidesTheWater) {
+  // A wall of water seen along the ground's plane: its lower rows lie under the ground.
+  const View view = orthographic_view({0, 5, 5}, {0, 0, 0}, {0, 1, 0}, 10, 10, 10);
+  SurfaceBuffers seen;
+  seen.coverage = Image<float>(10, 10, 1.0f);
+  seen.depth = Image<float>(10, 10, 7.0f);
+  seen.normal = Image<vec3>(10, 10, -view.forward);
+  Ground ground;
+  ground.height = 0;
+  const Scene scene(Environment(EnvironmentOptions{}), ground);
+  std::vector<std::uint32_t> expected;
+  int last_row_of_water = -1;
+  for (int y = 0; y < 10; ++y)
+    if (scene.ground_distance(view.ray({0.5f, static_cast<float>(y) + 0.5f})) >= 7.0f) last_row_of_water = y;
+  ASSERT_GE(last_row_of_water, 0);
+  ASSERT_LT(last_row_of_water, 9);
+  for (int y = last_row_of_water; y <= last_row_of_water + 1; ++y)
+    for (int x = 0; x < 10; ++x) expected.push_back(static_cast<std::uint32_t>(10 * y + x));
+  EXPECT_EQ(silhouette_pixels(view, seen, scene, 0.5f), expected);
+}
+
+TEST(Shown, BuffersAreColoursOverWhite) {
+  FrameSettings settings;
+  const Particles ball = [] {
+    Particles particles;
+    for (int z = -3; z <= 3; ++z)
+      for (int y = -3; y <= 3; ++y)
+        for (int x = -3; x <= 3; ++x) {
+          particles.x.push_back(static_cast<float>(x));
+          particles.y.push_back(static_cast<float>(y));
+          particles.z.push_back(static_cast<float>(z));
+        }
+    return particles;
+  }();
+  settings.view = orthographic_view({0, 0, 20}, vec3{0}, {0, 1, 0}, 12, 48, 48);
+  settings.surface.spacing = 1;
+  settings.show = Show::normals;
+  const Image<Rgb8> normals = render_frame(ball, settings).picture;
+  EXPECT_EQ(normals(0, 0), (Rgb8{255, 255, 255}));
+  // Towards the eye is (128, 128, 255) as in every normal map.
+  EXPECT_NEAR(normals(24, 24).r, 128, 3);
+  EXPECT_NEAR(normals(24, 24).g, 128, 3);
+  EXPECT_NEAR(normals(24, 24).b, 255, 1);
+  settings.show = Show::thickness;
+  const Image<Rgb8> thickness = render_frame(ball, settings).picture;
+  EXPECT_GT(thickness(24, 24).g, thickness(24, 11).g);  // viridis rises in green
 }
 
 }  // namespace
