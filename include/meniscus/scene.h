@@ -9,7 +9,7 @@ namespace meniscus {
 
 /// The light that comes from infinitely far: an analytic sky, or a map read from a .hdr file.
 ///
-/// The analytic sky is scaled so that a white diffuse plane that faces `up` has the radiance 0.8 in the sky's and
+/// The analytic sky is scaled so that a white diffuse plane that faces `up` has the radiance 1 in the sky's and
 /// the sun's light together. The radiances of a map are taken as they are.
 struct EnvironmentOptions {
   std::string hdr_path;  ///< Radiance .hdr, equirectangular; empty: the analytic sky
@@ -68,6 +68,12 @@ class GroundLight {
   virtual vec3 sun(vec3 point) const = 0;
   /// Fraction of the sky's light, per channel, in [0, 1].
   virtual vec3 sky(vec3 point) const = 0;
+  /// Both at once, which a table gives for the price of one.
+  struct Fractions {
+    vec3 sun;
+    vec3 sky;
+  };
+  virtual Fractions at(vec3 point) const { return {sun(point), sky(point)}; }
 };
 
 /// A ray with a width: `width` m at its origin, growing by `spread` m per metre of its length.

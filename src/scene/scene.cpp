@@ -57,7 +57,8 @@ vec3 Scene::ground_radiance(vec3 point, float width_u, float width_v) const {
                       chequer_fraction(on_plane, vec2{width_u * scale, width_v * scale}));
   }
   if (!light_) return albedo * (sun_exitance_ + sky_exitance_);
-  return albedo * (light_->sun(point) * sun_exitance_ + light_->sky(point) * sky_exitance_);
+  const GroundLight::Fractions light = light_->at(point);
+  return albedo * (light.sun * sun_exitance_ + light.sky * sky_exitance_);
 }
 
 vec3 Scene::radiance(const Ray& ray, float footprint) const { return radiance(ray, Beam{0.0f, footprint}); }

@@ -13,8 +13,8 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kTurbidity = 2.6f;
 /// Radiance of a white ground, and the sun's part of its irradiance while the sun stands high.
-constexpr float kWhiteGround = 0.8f;
-constexpr float kSunPart = 0.68f;
+constexpr float kWhiteGround = 1.0f;
+constexpr float kSunPart = 0.62f;
 
 float luminance(vec3 rgb) { return glm::dot(rgb, vec3{0.2126f, 0.7152f, 0.0722f}); }
 
@@ -85,12 +85,12 @@ Sky::Sky(vec3 sun) : sun_(sun) {
   scale_ = vec3{(1.0f - sun_part) * total / luminance(sky_irradiance)};
   vec3 sun_on_ground = sun_part * total * sun_colour(elevation);
 
-  // White balance: what a white ground shows is mostly, not fully, neutral.
-  const vec3 on_ground = scale_ * sky_irradiance + sun_on_ground;
-  const vec3 balance = glm::mix(vec3{1.0f}, vec3{luminance(on_ground)} / on_ground, 0.8f);
-  const float keep = luminance(on_ground) / luminance(balance * on_ground);
-  scale_ *= balance * keep;
-  sun_on_ground *= balance * keep;
+  // White balance: the sun's warmth makes up for most of the sky's blue, so that a white ground is nearly neutral.
+  const vec3 missing = glm::max(vec3{total} - scale_ * sky_irradiance, vec3{0.0f});
+  if (luminance(missing) > 0) {
+    const vec3 balanced = missing * (luminance(sun_on_ground) / luminance(missing));
+    sun_on_ground = glm::mix(sun_on_ground, balanced, 0.85f);
+  }
   // On a surface that faces the sun; with height = 0 both are zero.
   sun_irradiance_ = sun_on_ground / std::max(sun.z, 0.02f);
   ground_ = (0.3f / kPi) * (scale_ * sky_irradiance + sun_on_ground);
@@ -105,7 +105,7 @@ vec3 Sky::unscaled(vec3 direction) const {
                             vec3{0.0f});
   // The model's horizon is yellowish on the sun's side; haze scatters all colours alike.
   const float haze = 0.55f * std::exp(-6.0f * std::max(direction.z, 0.0f));
-  return glm::mix(rgb, vec3{0.90f, 1.01f, 1.16f} * luminance(rgb), haze);
+  return glm::mix(rgb, vec3{0.74f, 1.03f, 1.40f} * luminance(rgb), haze);
 }
 
 vec3 Sky::radiance(vec3 direction) const {

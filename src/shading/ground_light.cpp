@@ -125,7 +125,7 @@ std::shared_ptr<const GroundLight> ground_light(const Surface& surface, const En
   blur(skylight, std::max(1.0f, 2.0f * kPenumbra * texels));
 
   // Out to the edge everything becomes one.
-  Image<LightMap::Texel> map(view.width, view.height);
+  Image<GroundLight::Fractions> map(view.width, view.height);
   const float border = 0.25f * kMargin * texels;
   const float sky_taken = material.transparent ? 0.32f : 0.8f;
   for (int y = 0; y < map.height(); ++y)

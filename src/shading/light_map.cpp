@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace meniscus {
 namespace {
@@ -46,23 +47,26 @@ void blur_any(Image<T>& image, float sigma_px) {
 void blur(Image<vec3>& image, float sigma_px) { blur_any(image, sigma_px); }
 void blur(Image<float>& image, float sigma_px) { blur_any(image, sigma_px); }
 
-LightMap::LightMap(const View& view, Image<Texel> texels) : view_(view), texels_(std::move(texels)) {}
-
-vec3 LightMap::at(vec3 point, vec3 Texel::*part) const {
-  const vec3 p = view_.project(point);
-  const float x = p.x - 0.5f, y = p.y - 0.5f;
-  if (!(x >= 0 && y >= 0 && x < static_cast<float>(texels_.width() - 1) &&
-        y < static_cast<float>(texels_.height() - 1)))
-    return vec3{1.0f};
-  const int i = static_cast<int>(x), j = static_cast<int>(y);
-  const Texel* above = texels_.row(j) + i;
-  const Texel* below = texels_.row(j + 1) + i;
-  const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
-  return (1.0f - t) * ((1.0f - s) * above[0].*part + s * above[1].*part) +
-         t * ((1.0f - s) * below[0].*part + s * below[1].*part);
+LightMap::LightMap(const View& view, Image<Fractions> texels) : texels_(std::move(texels)) {
+  const float per_metre = 1.0f / view.pixel_size(0.0f);
+  x_axis_ = view.right * per_metre;
+  y_axis_ = -view.up * per_metre;
+  origin_ = vec2{0.5f * static_cast<float>(view.width) - 0.5f - glm::dot(view.eye, x_axis_),
+                 0.5f * static_cast<float>(view.height) - 0.5f - glm::dot(view.eye, y_axis_)};
 }
 
-vec3 LightMap::sun(vec3 point) const { return at(point, &Texel::sun); }
-vec3 LightMap::sky(vec3 point) const { return at(point, &Texel::sky); }
+GroundLight::Fractions LightMap::at(vec3 point) const {
+  const float x = glm::dot(x_axis_, point) + origin_.x, y = glm::dot(y_axis_, point) + origin_.y;
+  if (!(x >= 0 && y >= 0 && x < static_cast<float>(texels_.width() - 1) &&
+        y < static_cast<float>(texels_.height() - 1)))
+    return {vec3{1.0f}, vec3{1.0f}};
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const Fractions* above = texels_.row(j) + i;
+  const Fractions* below = texels_.row(j + 1) + i;
+  const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
+  const float w00 = (1.0f - s) * (1.0f - t), w10 = s * (1.0f - t), w01 = (1.0f - s) * t, w11 = s * t;
+  return {w00 * above[0].sun + w10 * above[1].sun + w01 * below[0].sun + w11 * below[1].sun,
+          w00 * above[0].sky + w10 * above[1].sky + w01 * below[0].sky + w11 * below[1].sky};
+}
 
 }  // namespace meniscus

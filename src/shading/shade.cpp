@@ -67,10 +67,10 @@ Image<vec3> shade(const View& view, std::span<const vec2> points, const SurfaceB
   Image<vec3> picture(width, height);
   parallel_for(picture.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const vec2 at = points.empty() ? vec2{static_cast<float>(i % static_cast<std::size_t>(width)) + 0.5f,
-                                            static_cast<float>(i / static_cast<std::size_t>(width)) + 0.5f}
-                                     : points[i];
-      const Ray ray = view.ray(at);
+      const std::size_t row_length = static_cast<std::size_t>(width);
+      const Ray ray = view.ray(
+          points.empty() ? vec2{static_cast<float>(i % row_length) + 0.5f, static_cast<float>(i / row_length) + 0.5f}
+                         : points[i]);
       const float depth = water.depth[i];
       float coverage = std::clamp(water.coverage[i], 0.0f, 1.0f);
       if (!(coverage > 0) || !(depth >= 0 && depth < kInfinity)) coverage = 0;
@@ -90,8 +90,9 @@ Image<vec3> shade(const View& view, std::span<const vec2> points, const SurfaceB
         sample.thickness = thickness > 0 && thickness < kInfinity ? thickness : 0.0f;
         sample.beam = beam;
         sample.normal_variance = variance.at(i);
-        const Material own = coloured ? tinted(material, water.colour[i]) : Material{};
-        const Material& here = coloured ? own : material;
+        std::optional<Material> own;
+        if (coloured) own = tinted(material, water.colour[i]);
+        const Material& here = own ? *own : material;
         const vec3 seen = !here.transparent    ? opaque_radiance(sample, scene, here)
                           : water.eye_in_water ? window_radiance(sample, scene, here)
                                                : transparent_radiance(sample, scene, here);
