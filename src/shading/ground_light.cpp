@@ -21,7 +21,8 @@ constexpr float kPenumbra = 0.0045f;
 constexpr float kSkyBlur = 0.045f;
 /// Light is bent by no more than arriving along the surface: tan(90 deg - 48.6 deg).
 constexpr float kLargestBend = 0.88f;
-constexpr float kBrightest = 2.2f;
+/// Real focal points are brighter than this; the slopes of a particle surface are not true enough to draw them.
+constexpr float kBrightest = 4.0f;
 
 /// Orthographic view along the sun's rays that holds the water.
 View view_from_sun(const Bounds& bounds, vec3 sun, vec3 up, float& extent) {

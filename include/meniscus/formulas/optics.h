@@ -17,7 +17,7 @@ struct Interface {
   float cos_t;          // cosine of the refracted ray with the reversed normal; 0 at total reflection
 };
 
-/// Fresnel's equations for a dielectric.                                              [BornWolf] 1.5.2, eq. 21
+/// Fresnel's equations for a dielectric. Born and Wolf, Principles of Optics, 1.5.2:
 ///   R_s = ((cos_i - eta cos_t) / (cos_i + eta cos_t))^2,   R_p = ((eta cos_i - cos_t) / (eta cos_i + cos_t))^2
 /// @param cos_i  cosine of the angle of incidence; clamped to [0, 1]
 /// @param eta    > 0

@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "fixtures.h"
+
+namespace meniscus {
+namespace {
+
+/// A ball or a square slab, whose thickness is known; a slab may have waves along x.
+class Body : public Surface {
+ public:
+  static constexpr float kPeriod = 1.0f;
+  Body(vec3 half, bool ball, float wave = 0) : half_(half), ball_(ball), wave_(wave) {}
+  SurfaceBuffers see(const View&, std::span<const vec2>, StageTimes*) const override { return {}; }
+  Image<float> thickness(const View& view, std::span<const vec2>, StageTimes*) const override {
+    Image<float> image(view.width, view.height);
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x)
+        image(x, y) = chord(view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
+    return image;
+  }
+  Bounds bounds() const override {
+    Bounds box;
+    if (half_.x > 0) {
+      box.add({-half_.x, 0, -half_.z});
+      box.add({half_.x, 2 * half_.y, half_.z});
+    }
+    return box;
+  }
+
+ private:
+  float chord(const Ray& ray) const {
+    const vec3 origin = ray.origin - vec3{0, half_.y, 0};
+    if (ball_) {
+      const float b = glm::dot(origin, ray.direction), c = glm::dot(origin, origin) - half_.y * half_.y;
+      return b * b > c ? 2.0f * std::sqrt(b * b - c) : 0.0f;
+    }
+    const vec3 a = (-half_ - origin) / ray.direction, b = (half_ - origin) / ray.direction;
+    const vec3 low = glm::min(a, b), high = glm::max(a, b);
+    const float length = std::min(high.x, std::min(high.y, high.z)) - std::max(low.x, std::max(low.y, low.z));
+    return length > 0 ? length + wave_ * std::cos(2.0f * 3.14159265f / kPeriod * ray.origin.x) : 0.0f;
+  }
+  vec3 half_;
+  bool ball_;
+  float wave_;
+};
+
+Environment under_sun(vec3 direction) {
+  EnvironmentOptions options;
+  options.sun_direction = direction;
+  return Environment(options);
+}
+
+const vec3 kSun{0.02f, 1.0f, 0.01f};
+
+TEST(GroundLight, IsWholeWithoutWaterAndFarFromIt) {
+  const Environment environment = under_sun(kSun);
+  const Material water = material_preset("water", 1.0f);
+  const auto none = ground_light(Body(vec3{0.0f}, false), environment, Ground{}, water);
+  EXPECT_EQ(none->sun({0, 0, 0}), vec3{1.0f});
+  EXPECT_EQ(none->sky({0, 0, 0}), vec3{1.0f});
+  const auto some = ground_light(Body(vec3{1.0f}, false), environment, Ground{}, water);
+  EXPECT_EQ(some->sun({30, 0, 0}), vec3{1.0f});
+  EXPECT_EQ(some->sky({0, 0, -30}), vec3{1.0f});
+}
+
+TEST(GroundLight, UnderASlabIsFresnelTimesBeer) {
+  Material material = tests::clear();
+  material.extinction = {0.2f, 0.5f, 1.5f};
+  const auto light = ground_light(Body({2, 0.5f, 2}, false), under_sun({0, 1, 0}), Ground{}, material);
+  const double r = tests::reflectance(0, 1.333);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(light->sun({0.1f, 0, 0.2f})[k], (1 - 2 * r) * std::exp(-static_cast<double>(material.extinction[k])),
+                2e-3);
+}
+
+TEST(GroundLight, UnderAnOpaqueBodyIsDark) {
+  const auto light = ground_light(Body(vec3{1.0f}, false), under_sun(kSun), Ground{}, material_preset("clay", 1.0f));
+  EXPECT_LT(light->sun({0, 0, 0}).x, 0.01f);
+  EXPECT_LT(light->sky({0, 0, 0}).x, 0.5f);
+  EXPECT_GT(light->sky({0, 0, 0}).x, 0.05f);
+}
+
+TEST(GroundLight, FallsWhereTheSunThrowsIt) {
+  // A slab 2 m high under a sun at 45 degrees: its shadow reaches 2 m away from the sun and not towards it.
+  const auto light =
+      ground_light(Body({0.5f, 1.0f, 0.5f}, false), under_sun({1, 1, 0}), Ground{}, material_preset("clay", 1.0f));
+  EXPECT_LT(light->sun({-1.8f, 0, 0}).x, 0.1f);
+  EXPECT_GT(light->sun({1.0f, 0, 0}).x, 0.95f);
+}
+
+TEST(GroundLight, IsGatheredUnderABallAndMissingAtItsRim) {
+  const auto light = ground_light(Body(vec3{1.0f}, true), under_sun({0, 1, 0}), Ground{}, tests::clear());
+  EXPECT_GT(light->sun({0, 0, 0}).x, 1.1f);
+  EXPECT_LT(light->sun({0.93f, 0, 0}).x, 0.6f);
+}
+
+TEST(GroundLight, IsNeitherMadeNorLostByBending) {
+  // Under waves light is gathered and thinned out; its mean over a period is that of level water.
+  const auto light = ground_light(Body({2, 0.5f, 2}, false, 0.05f), under_sun({0, 1, 0}), Ground{}, tests::clear());
+  double sum = 0, low = 9, high = 0;
+  constexpr int kSteps = 400;
+  for (int i = 0; i < kSteps; ++i) {
+    const float x = Body::kPeriod * (static_cast<float>(i) / kSteps - 0.5f);
+    const double value = static_cast<double>(light->sun({x, 0, 0.1f}).x);
+    sum += value;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  EXPECT_NEAR(sum / kSteps, 1 - 2 * tests::reflectance(0, 1.333), 0.01);
+  EXPECT_GT(high, 1.2);
+  EXPECT_LT(low, 0.9);
+}
+
+TEST(GroundLight, HasNoSteps) {
+  const auto light = ground_light(Body({0.7f, 0.5f, 0.4f}, false), under_sun({0.5f, 0.7f, 0.3f}), Ground{},
+                                  material_preset("water", 1.0f));
+  vec3 last = light->sun({-3, 0, 0.1f});
+  for (float x = -3; x < 3; x += 0.002f) {
+    const vec3 now = light->sun({x, 0, 0.1f});
+    for (int k = 0; k < 3; ++k) ASSERT_TRUE(now[k] >= 0 && now[k] < 3.0f);
+    EXPECT_LT(glm::length(now - last), 0.15f) << x;
+    last = now;
+  }
+}
+
+TEST(GroundLight, KnowsNoShadowOfASunBelowTheHorizon) {
+  const auto light =
+      ground_light(Body(vec3{1.0f}, false), under_sun({1, -0.2f, 0}), Ground{}, material_preset("clay", 1.0f));
+  EXPECT_EQ(light->sun({0, 0, 0}), vec3{1.0f});
+  EXPECT_LT(light->sky({0, 0, 0}).x, 0.7f);
+}
+
+TEST(GroundLight, GivesTheSameBitsForAnyNumberOfThreads) {
+  const Environment environment = under_sun({0.3f, 0.8f, 0.1f});
+  std::vector<std::shared_ptr<const GroundLight>> lights;
+  for (const int threads : {1, 2, 5}) {
+    const ThreadLimit limit(threads);
+    lights.push_back(
+        ground_light(Body({0.7f, 0.5f, 0.4f}, true), environment, Ground{}, material_preset("water", 1.0f)));
+  }
+  for (float x = -1; x < 1; x += 0.013f) {
+    EXPECT_EQ(lights[0]->sun({x, 0, 0.1f}), lights[1]->sun({x, 0, 0.1f}));
+    EXPECT_EQ(lights[0]->sky({x, 0, 0.1f}), lights[2]->sky({x, 0, 0.1f}));
+  }
+}
+
+}  // namespace
+}  // namespace meniscus
