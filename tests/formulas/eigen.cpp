@@ -9,7 +9,7 @@
 namespace meniscus::formulas {
 namespace {
 
-double uniform(std::mt19937& random) { return random() / 2147483648.0 - 1.0; }
+double uniform(std::mt19937& random) { return static_cast<double>(random()) / 2147483648.0 - 1.0; }
 
 double size_of(const Symmetric3& a) {
   return std::sqrt(

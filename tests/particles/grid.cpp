@@ -10,7 +10,9 @@ namespace {
 class Cloud {
  public:
   explicit Cloud(unsigned seed) : random_(seed) {}
-  float between(float low, float high) { return low + (high - low) * static_cast<float>(random_() * 0x1p-32); }
+  float between(float low, float high) {
+    return low + (high - low) * static_cast<float>(static_cast<double>(random_()) * 0x1p-32);
+  }
   void add(float x, float y, float z) {
     particles.x.push_back(x);
     particles.y.push_back(y);
@@ -91,7 +93,9 @@ void expect_sorted(const Particles& particles, float cell) {
     const std::size_t key = grid.cell_index(box.x0, box.y0, box.z0);
     if (i > 0) {
       ASSERT_LE(before, key);
-      if (before == key) ASSERT_LT(grid.given_index(i - 1), from);
+      if (before == key) {
+        ASSERT_LT(grid.given_index(i - 1), from);
+      }
     }
     before = key;
   }

@@ -62,7 +62,7 @@ TEST(FastAgainstPlain, AgreesForOtherLengthsStepsAndNormals) {
 }
 
 TEST(FastAgainstPlain, AgreesOnParticlesThrownAtRandom) {
-  for (const std::uint64_t seed : {11, 12, 13}) {
+  for (const std::uint64_t seed : {11ull, 12ull, 13ull}) {
     const Particles particles = random_cloud(5000, 15, seed);  // about 1.5 a cubic spacing: dense, with voids
     const View view = looking_at(particles.bounds(), {0.4f, 0.7f, 0.5f}, kProjections[seed % 2], 80, 64);
     expect_same_picture(fast_against_plain(particles, options(), view), "random cloud " + std::to_string(seed));
@@ -70,7 +70,7 @@ TEST(FastAgainstPlain, AgreesOnParticlesThrownAtRandom) {
 }
 
 TEST(FastAgainstPlain, AgreesOnClumps) {
-  for (const std::uint64_t seed : {21, 22, 23}) {
+  for (const std::uint64_t seed : {21ull, 22ull, 23ull}) {
     const Particles particles = clumped_cloud(4000, 16, seed);
     const View view = looking_at(particles.bounds(), {-0.6f, 0.2f, 0.5f}, kProjections[seed % 2], 80, 64);
     expect_same_picture(fast_against_plain(particles, options(), view), "clumped cloud " + std::to_string(seed));
@@ -106,6 +106,33 @@ TEST(CullInterior, LeavesThePictureAsItIs) {
       EXPECT_LT(d.depth_p99, 0.01) << d;
       EXPECT_LT(d.normal_mean, 0.2) << d;
     }
+}
+
+TEST(CullInterior, SeesWhatLiesBehindGapsThatCountsOfParticlesDoNotShow) {
+  // Three particles in one point of each cell of the grid fill it well by their number, yet parallel rays run between
+  // such clumps. Amidst them, where particles are not drawn, the clumps stand in those rays' way.
+  Particles particles;
+  add(particles, vec3{0});  // so that the others stand in the middles of cells of two spacings
+  constexpr int kCells = 9;
+  for (int z = 0; z < kCells; ++z)
+    for (int y = 0; y < kCells; ++y)
+      for (int x = 0; x < kCells; ++x) {
+        const bool amidst = std::min({x, y, z}) >= 2 && std::max({x, y, z}) <= kCells - 3;
+        const vec3 at = 2.0f * vec3{x, y, z} + vec3{1, 1, 1} + (amidst ? vec3{0.9f, 0.9f, 0} : vec3{0});
+        for (int i = 0; i < 3; ++i) add(particles, kSpacing * at);
+      }
+  RaycastOptions culled = options(), whole = options();
+  whole.cull_interior = false;
+  const View view =
+      orthographic_view(kSpacing * vec3{9, 9, 40}, kSpacing * vec3{9, 9, 0}, {0, 1, 0}, 18 * kSpacing, 180, 180);
+  const SurfaceBuffers a = make_raycast_surface(particles, culled)->see(view),
+                       b = make_raycast_surface(particles, whole)->see(view);
+  int amidst = 0;
+  for_each_hit(view, b, [&](int, int, const Ray&, vec3 point) { amidst += point.z < (2 * kCells - 3) * kSpacing; });
+  EXPECT_GT(amidst, 100);
+  const Difference d = difference(b, a);
+  EXPECT_EQ(d.mismatch, 0.0) << d;
+  EXPECT_LT(d.depth_p99, 0.01) << d;
 }
 
 TEST(CullInterior, LosesNoWaterFromAnyDirection) {
