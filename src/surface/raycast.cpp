@@ -7,6 +7,7 @@
 #include "surface/normal_filter.h"
 #include "surface/packet.h"
 #include "surface/splat.h"
+#include "surface/thickness_filter.h"
 
 namespace meniscus {
 namespace {
@@ -146,7 +147,8 @@ class RaycastSurface final : public Surface {
     const int stride = thickness_stride(view);
     const Image<float> coarse = splat_chords(
         view, {{grid.x(), grid.size()}, {grid.y(), grid.size()}, {grid.z(), grid.size()}, {&r, 1}}, weight, stride);
-    return enlarged(coarse, stride, view, points);
+    const float spacing_px = s / view.pixel_size(middle_depth(view)) / static_cast<float>(stride);
+    return enlarged(smoothed_thickness(coarse, std::min(spacing_px, 4.0f), s), stride, view, points);
   }
 
   Bounds bounds() const override { return field_.grid.bounds().grown(field_.options.smoothing_length); }
@@ -347,13 +349,16 @@ class RaycastSurface final : public Surface {
     });
   }
 
+  /// Depth of the middle of the water, m, for what depends on how large a particle is seen.
+  float middle_depth(const View& view) const {
+    const Bounds box = field_.grid.bounds();
+    return std::max(glm::dot(box.centre() - view.eye, view.forward), field_.options.spacing);
+  }
+
   /// Pixels between the samples of the thickness: two to three samples a spacing in the middle of the water.
   int thickness_stride(const View& view) const {
-    const Bounds box = field_.grid.bounds();
-    if (box.empty()) return 1;
-    const float depth = std::max(glm::dot(box.centre() - view.eye, view.forward), field_.options.spacing);
-    const float spacing_px = field_.options.spacing / view.pixel_size(depth);
-    return std::clamp(static_cast<int>(spacing_px / 2.0f), 1, 8);
+    if (field_.grid.size() == 0) return 1;
+    return std::clamp(static_cast<int>(field_.options.spacing / view.pixel_size(middle_depth(view)) / 2.0f), 1, 8);
   }
 
   /// Bilinear between the centres of blocks of stride x stride pixels.
