@@ -19,6 +19,9 @@ constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// The least cosine between normal and direction to the eye.
 constexpr float kLeastCosine = 0.02f;
+/// How far the far side of a body of water turns a ray back to its first direction.
+constexpr float kBackFromDeep = 0.9f;
+constexpr float kBackFromThin = 0.3f;
 /// The sun's image is at least this wide, rad^2: its true width falls between pixels.
 constexpr float kLeastGlareVariance = 1.2e-4f;
 /// And at most this bright, in radiances of a white ground or so: brighter spots show every stair of an edge.
@@ -126,7 +129,12 @@ vec3 transparent_radiance(const Sample& sample, const Scene& scene, const Materi
   const bool on_ground = to_ground <= path;
   if (on_ground) path = to_ground;
 
-  // Through the far side the ray goes on as it is.
+  // What the far side does is not known: parallel faces give the ray its first direction back, a round drop bends it
+  // once more. Deep bodies are mostly taken for the first, thin ones (drops, crests) for the second; deep means that
+  // they are seen to be tinted.
+  const float back = glm::mix(kBackFromThin, kBackFromDeep,
+                              glm::smoothstep(0.1f, 0.7f, maximum(material.extinction) * sample.thickness));
+  const vec3 onward = glm::normalize(glm::mix(inside, direction, on_ground ? 0.0f : back));
   const float slopes = (1.0f - 1.0f / material.ior) * std::sqrt(sample.normal_variance);
   const Beam beam{sample.beam.width + sample.beam.spread * (sample.depth + path) + slopes * path,
                   sample.beam.spread + slopes};
@@ -134,7 +142,7 @@ vec3 transparent_radiance(const Sample& sample, const Scene& scene, const Materi
   vec3 transmitted{0};
   const Contact contact = contact_of(sample, scene);
   if (contact.weight < 1.0f) {
-    const vec3 behind = scene.radiance({on_ground ? point : point + path * inside, inside}, beam);
+    const vec3 behind = scene.radiance({on_ground ? point : point + path * inside, onward}, beam);
     transmitted = through_medium(behind, path, material, light);
   }
   if (contact.weight > 0.0f) {
