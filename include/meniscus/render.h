@@ -94,7 +94,7 @@ struct CameraOptions {
   std::optional<vec3> eye;                   ///< m
   std::optional<vec3> target;                ///< m; default the middle of the water
   std::optional<float> azimuth_deg;          ///< default 30 off the water's longer horizontal side
-  std::optional<float> elevation_deg;        ///< above the horizon; default 20
+  std::optional<float> elevation_deg;        ///< above the horizon; default 16
   std::optional<float> distance;             ///< m from the target
   std::optional<float> orthographic_height;  ///< m; parallel rays, a picture of this height
   float fov_deg = 35;                        ///< full vertical field of view

@@ -110,7 +110,7 @@ View fitted_view(const Bounds& water, Axis up, const CameraOptions& options, flo
   const vec3 up_direction = direction_of(up);
   const float fov = glm::radians(options.fov_deg);
   const float aspect = static_cast<float>(width) / static_cast<float>(std::max(height, 1));
-  const float elevation = options.elevation_deg.value_or(20.0f);
+  const float elevation = options.elevation_deg.value_or(16.0f);
   const float azimuth = options.azimuth_deg.value_or(default_azimuth_deg(bounds, up));
   const vec3 target = options.target.value_or(bounds.centre());
   const float tangent = std::tan(0.5f * fov) * (1 - options.margin);
