@@ -104,8 +104,8 @@ vec3 Sky::unscaled(vec3 direction) const {
                                          y_.zenith * y_.at(cos_theta, gamma, cos_gamma), y_value),
                             vec3{0.0f});
   // The model's horizon is yellowish on the sun's side; haze scatters all colours alike.
-  const float haze = 0.55f * std::exp(-6.0f * std::max(direction.z, 0.0f));
-  return glm::mix(rgb, vec3{0.74f, 1.03f, 1.40f} * luminance(rgb), haze);
+  const float haze = 0.25f + 0.70f * std::exp(-5.0f * std::max(direction.z, 0.0f));
+  return glm::mix(rgb, vec3{0.80f, 1.03f, 1.30f} * luminance(rgb), haze);
 }
 
 vec3 Sky::radiance(vec3 direction) const {

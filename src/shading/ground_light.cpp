@@ -23,6 +23,8 @@ constexpr float kSkyBlur = 0.045f;
 constexpr float kLargestBend = 0.88f;
 /// Real focal points are brighter than this; the slopes of a particle surface are not true enough to draw them.
 constexpr float kBrightest = 4.0f;
+/// The part of the sky's light that a dark body on the ground takes away under it.
+constexpr float kMostSkyTaken = 0.8f;
 
 /// Orthographic view along the sun's rays that holds the water.
 View view_from_sun(const Bounds& bounds, vec3 sun, vec3 up, float& extent) {
@@ -123,18 +125,20 @@ std::shared_ptr<const GroundLight> ground_light(const Surface& surface, const En
   if (material.transparent) sunlight = gathered(sunlight, smooth, texel, material.ior);
   blur(sunlight, std::max(1.0f, kPenumbra * texels));
   blur(cover, kSkyBlur * texels);
-  blur(skylight, std::max(1.0f, 2.0f * kPenumbra * texels));
+  blur(skylight, kSkyBlur * texels);
 
   // Out to the edge everything becomes one.
   Image<GroundLight::Fractions> map(view.width, view.height);
   const float border = 0.25f * kMargin * texels;
-  const float sky_taken = material.transparent ? 0.32f : 0.8f;
+  const float sky_taken = material.transparent ? 0.30f : kMostSkyTaken;
   for (int y = 0; y < map.height(); ++y)
     for (int x = 0; x < map.width(); ++x) {
       const int inwards = std::min(std::min(x, map.width() - 1 - x), std::min(y, map.height() - 1 - y));
       const float presence = std::clamp(static_cast<float>(inwards) / border, 0.0f, 1.0f);
       const vec3 sun_part = sun_shines ? glm::clamp(sunlight(x, y), vec3{0.0f}, vec3{kBrightest}) : vec3{1.0f};
-      const vec3 sky_part = glm::clamp(skylight(x, y), vec3{0.0f}, vec3{1.0f}) * (1.0f - sky_taken * cover(x, y));
+      // Sky light comes from all around: even beside black ink most of it arrives, and some under it.
+      const vec3 held_back = glm::mix(vec3{kMostSkyTaken}, vec3{sky_taken}, skylight(x, y));
+      const vec3 sky_part = glm::clamp(1.0f - held_back * cover(x, y), vec3{0.0f}, vec3{1.0f});
       map(x, y) = {glm::mix(vec3{1.0f}, sun_part, presence), glm::mix(vec3{1.0f}, sky_part, presence)};
     }
   return std::make_shared<LightMap>(view, std::move(map));
