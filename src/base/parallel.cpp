@@ -1,11 +1,26 @@
-#include <algorithm>
-#include <atomic>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <algorithm>
+#include <atomic>
 
 #include "meniscus/base.h"
+
+// Debian's oneTBB is not compiled for the thread sanitizer, which then reports races inside of it. There, plain
+// threads take the pieces, and what is reported is ours.
+#if defined(__SANITIZE_THREAD__)
+#define MENISCUS_PLAIN_THREADS 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define MENISCUS_PLAIN_THREADS 1
+#endif
+#endif
+#ifdef MENISCUS_PLAIN_THREADS
+#include <exception>
+#include <mutex>
+#include <thread>
+#endif
 
 namespace meniscus {
 namespace {
@@ -29,6 +44,25 @@ void parallel_for(std::size_t count, std::size_t grain, FunctionRef<void(std::si
     run(0);
     return;
   }
+#ifdef MENISCUS_PLAIN_THREADS
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  const auto work = [&] {
+    for (std::size_t piece = next++; piece < pieces; piece = next++) try {
+        run(piece);
+      } catch (...) {
+        const std::lock_guard lock(failure_mutex);
+        if (!failure) failure = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (int i = 1; i < thread_count(); ++i) helpers.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+#else
   const int requested = requested_threads.load();
   if (requested > tbb::info::default_concurrency()) {
     // The default arena has one slot a core; more threads than cores need an arena of their own.
@@ -36,6 +70,7 @@ void parallel_for(std::size_t count, std::size_t grain, FunctionRef<void(std::si
     return;
   }
   tbb::parallel_for(std::size_t{0}, pieces, run);
+#endif
 }
 
 ThreadLimit::ThreadLimit(int count) : control_(nullptr) {

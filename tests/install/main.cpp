@@ -42,5 +42,21 @@ int main() {
     thrown = error.code() == ErrorCode::invalid_argument;
   }
   claim(thrown, "errors cross the library's boundary");
+
+  Particles ball;
+  for (int z = -4; z <= 4; ++z)
+    for (int y = -4; y <= 4; ++y)
+      for (int x = -4; x <= 4; ++x)
+        if (x * x + y * y + z * z <= 16) {
+          ball.x.push_back(0.1f * static_cast<float>(x));
+          ball.y.push_back(0.1f * static_cast<float>(y));
+          ball.z.push_back(0.1f * static_cast<float>(z));
+        }
+  PictureOptions options;
+  options.width = 64;
+  options.height = 48;
+  const FramePicture frame = render_frame(ball, settings_of(survey_particles(ball), options));
+  claim(frame.picture.width() == 64 && frame.picture.height() == 48, "a frame is drawn at the size asked for");
+  claim(frame.buffers.coverage(32, 24) == 1.0f, "the water is in the middle of the picture");
   return failures;
 }
