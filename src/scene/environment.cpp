@@ -105,10 +105,10 @@ vec3 Environment::sun_glare(vec3 direction, float variance) const {
   const float s = kDiscVariance + std::max(variance, 0.0f);
   // Half the squared chord is 1 - cos without its cancellation.
   const vec3 chord = direction - parts_->sun_direction;
-  const float exponent = 0.5f * glm::dot(chord, chord) / s;
-  if (exponent > 30.0f) return vec3{0.0f};
-  const float norm = 2.0f * std::numbers::pi_v<float> * s * (1.0f - std::exp(-2.0f / s));
-  return parts_->sun_irradiance * (std::exp(-exponent) / norm);
+  const float above = 0.5f * glm::dot(chord, chord);
+  if (above > 30.0f * s) return vec3{0.0f};
+  const float backwards = s > 0.05f ? std::exp(-2.0f / s) : 0.0f;
+  return parts_->sun_irradiance * (std::exp(-above / s) / (2.0f * std::numbers::pi_v<float> * s * (1.0f - backwards)));
 }
 
 }  // namespace meniscus

@@ -41,8 +41,9 @@ void require_material(const Material& material) {
 vec3 background(const Ray& ray, Beam beam, const Scene& scene) {
   vec3 radiance = scene.radiance(ray, beam);
   const Environment& environment = scene.environment();
-  if (environment.sun_visible() && !(scene.ground_distance(ray) < kInfinity))
-    radiance += glm::min(environment.sun_glare(ray.direction, beam.spread * beam.spread), vec3{200.0f});
+  if (!environment.sun_visible()) return radiance;
+  const vec3 disc = environment.sun_glare(ray.direction, beam.spread * beam.spread);
+  if (disc != vec3{0.0f} && !(scene.ground_distance(ray) < kInfinity)) radiance += glm::min(disc, vec3{200.0f});
   return radiance;
 }
 
