@@ -1,5 +1,6 @@
 // Water along rays [vanDerLaan2009], in metres.
 #include "surface/fixtures.h"
+#include "surface/thickness_filter.h"
 
 namespace meniscus {
 namespace {
@@ -22,27 +23,28 @@ TEST(Thickness, OfAFilledBoxIsItsChordWithinFivePercent) {
   const Particles particles = lattice_box(20, 18, 16);
   const Bounds box = particles.bounds().grown(0.5f * kSpacing);
   for (const Projection projection : kProjections)
-    // Parallel rays along the lattice's axes or diagonals run between its rows: a tenth there. Others: a twentieth.
-    for (const vec3 direction : {vec3{0, 0, 1}, vec3{1, 0.4f, 0.3f}, vec3{0.5f, 0.6f, -1}, vec3{-0.8f, 1, 0.7f}})
+    // Along the lattice's axes and diagonals, too. Smoothing rounds the edges between the faces: a tenth there.
+    for (const vec3 direction :
+         {vec3{0, 0, 1}, vec3{1, 0.4f, 0.3f}, vec3{0.5f, 0.6f, -1}, vec3{-0.8f, 1, 0.7f}, vec3{-1, 1, 1}})
       for (const int size : {60, 170}) {  // both sampled at every pixel and at every few
         const auto fast = make_raycast_surface(particles, options());
         const View view = looking_at(particles.bounds(), direction, projection, size, size);
         const Image<float> thickness = fast->thickness(view);
-        double most = 0, mean = 0;
-        int looked = 0;
+        std::vector<double> off;
+        double mean = 0;
         for (int y = 0; y < size; ++y)
           for (int x = 0; x < size; ++x) {
             // Rays well inside: at least two spacings from the edges where they enter and leave.
             const Ray ray = pixel_ray(view, x, y);
             const double expected = chord(ray, box);
             if (chord(ray, box.grown(-2.0f * kSpacing)) < 0.6 * expected || expected < 8 * kSpacing) continue;
-            ++looked;
+            off.push_back(std::abs(thickness(x, y) / expected - 1));
             mean += thickness(x, y) / expected - 1;
-            most = std::max(most, std::abs(thickness(x, y) / expected - 1));
           }
-        EXPECT_GT(looked, 100);
-        EXPECT_LT(most, direction.x == 0 ? 0.12 : 0.05) << direction.x << " " << direction.y << " " << direction.z;
-        EXPECT_LT(std::abs(mean / looked), 0.02);
+        ASSERT_GT(off.size(), 100u);
+        EXPECT_LT(std::abs(mean / static_cast<double>(off.size())), 0.02);
+        EXPECT_LT(quantile(off, 0.95), 0.05) << direction.x << " " << direction.y << " " << direction.z;
+        EXPECT_LT(quantile(off, 1), 0.1) << direction.x << " " << direction.y << " " << direction.z;
       }
 }
 
@@ -70,7 +72,7 @@ TEST(Thickness, OfAnyCloudHoldsItsVolume) {
     for (const float t : thickness) sum += t;
     const double pixel = 2.0 * view.half_height / view.height;
     const double volume = static_cast<double>(particles.size()) * std::pow(kSpacing, 3);
-    EXPECT_NEAR(sum * pixel * pixel / volume, 1.0, 0.02);
+    EXPECT_NEAR(sum * pixel * pixel / volume, 1.0, 0.04);  // smoothing keeps it nearly
   }
 }
 
@@ -97,7 +99,7 @@ TEST(Thickness, IsNotNegativeAndZeroAwayFromTheWater) {
   EXPECT_GT(covered, 300);
 }
 
-TEST(Thickness, IsTheSameByBothSurfacesAndWaysToAskForIt) {
+TEST(Thickness, IsThatOfThePlainSurfaceSmoothedAndTheSameByAllWaysToAskForIt) {
   const Particles particles = wavy_tank();
   const View view = looking_at(particles.bounds(), {1, 0.2f, 0.5f}, Projection::perspective, 71, 53);
   const auto fast = make_raycast_surface(particles, options()),
@@ -109,10 +111,31 @@ TEST(Thickness, IsTheSameByBothSurfacesAndWaysToAskForIt) {
     for (int x = 0; x < view.width; ++x)
       centres.emplace_back(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const Image<float> d = fast->thickness(view, centres);
+  // The plain surface does not smooth; the width is a spacing in the middle of the water.
+  const float spacing_px = kSpacing / view.pixel_size(glm::dot(particles.bounds().centre() - view.eye, view.forward));
+  const Image<float> smooth = smoothed_thickness(b, spacing_px, kSpacing);
+  double sum = 0, plain_sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_NEAR(a[i], b[i], 0.02f * kSpacing);
+    ASSERT_NEAR(a[i], smooth[i], 0.02f * kSpacing);
+    sum += a[i];
+    plain_sum += b[i];
     ASSERT_NEAR(a[i], d[i], 1e-3f * kSpacing);
   }
+  EXPECT_NEAR(sum / plain_sum, 1.0, 0.04);
+}
+
+TEST(SmoothedThickness, TakesRipplesAndLeavesOutlines) {
+  // A ripple of a tenth with a period of four pixels on water of ten spacings, and a drop's edge before nothing.
+  Image<float> map(64, 48, 0.0f);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 40; ++x)
+      map(x, y) = 10 * kSpacing * (1 + 0.1f * std::sin(0.5f * std::numbers::pi_v<float> * static_cast<float>(x)));
+  const Image<float> smooth = smoothed_thickness(map, 3.0f, kSpacing);
+  for (int x = 8; x < 32; ++x) EXPECT_NEAR(smooth(x, 20), 10 * kSpacing, 0.4f * kSpacing) << x;
+  for (int x = 40; x < 64; ++x) EXPECT_EQ(smooth(x, 20), 0.0f);
+  const Image<float> even(30, 20, 0.7f);
+  for (const float t : smoothed_thickness(even, 2.0f, kSpacing)) EXPECT_NEAR(t, 0.7f, 1e-5f);
+  EXPECT_TRUE(same_bits(smoothed_thickness(map, 0.3f, kSpacing), map));
 }
 
 TEST(Thickness, CanBeLeftOut) {
