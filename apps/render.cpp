@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -21,12 +23,18 @@ struct RenderArguments {
   int threads = 0;
 };
 
-void check_layers(const std::vector<std::string>& layers) {
+/// "depth,coverage"
+std::vector<std::string> parse_layers(std::string_view text) {
   const std::vector<std::string> known = layer_names();
-  for (const std::string& layer : layers)
-    if (std::find(known.begin(), known.end(), layer) == known.end())
-      throw UsageError(fmt::format(
-          "--layers: radiance, depth, normal, thickness, coverage or colour was expected, not '{}'", layer));
+  std::vector<std::string> layers;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    layers.emplace_back(text.substr(0, comma));
+    if (std::find(known.begin(), known.end(), layers.back()) == known.end())
+      throw UsageError(fmt::format("--layers: {} was expected, not '{}'", fmt::join(known, ", "), layers.back()));
+    if (comma == std::string_view::npos) return layers;
+    text.remove_prefix(comma + 1);
+  }
 }
 
 /// N pictures of one frame, if the camera moves.
@@ -37,10 +45,14 @@ std::size_t turntable_of(const RenderArguments& arguments, const PictureOptions&
 
 void render(RenderArguments& arguments) {
   // All that can be wrong with the arguments shows before the work.
-  check_layers(arguments.sequence.layers);
   static_cast<void>(OutputTarget(arguments.sequence.output));
   PictureOptions picture = arguments.picture.options(arguments.input);
   if (!picture.material.empty()) static_cast<void>(material_preset(picture.material, 1.0f));
+  if (!picture.environment_hdr.empty()) {
+    EnvironmentOptions environment;
+    environment.hdr_path = picture.environment_hdr;
+    static_cast<void>(Environment(environment));
+  }
   const FrameSequence sequence = arguments.input.find(arguments.quiet);
   arguments.sequence.strict = arguments.input.strict;
   arguments.sequence.turntable = turntable_of(arguments, picture);
@@ -91,11 +103,10 @@ void add_output(CLI::App& command, RenderArguments& arguments) {
   command.add_flag("--resume", sequence.resume, "Leave pictures and films that are there already as they are")
       ->group(group);
   command
-      .add_option("--layers", sequence.layers,
-                  "Layers of an EXR file: radiance, depth, normal, thickness, coverage, colour (default: all)")
+      .add_option_function<std::string>(
+          "--layers", [&sequence](const std::string& text) { sequence.layers = parse_layers(text); },
+          "Layers of an EXR file: radiance, depth, normal, thickness, coverage, colour (default: all)")
       ->type_name("NAME,...")
-      ->delimiter(',')
-      ->expected(1)
       ->group(group);
   command.add_option("--report", arguments.report_path, "Write times and memory of every frame into a JSON file")
       ->type_name("FILE.json")

@@ -43,6 +43,9 @@ int run(int argc, char** argv) {
   program.footer(
       "Exit codes: 0 done, 1 the run failed, 2 the arguments cannot be meant.\n"
       "Each command has its own --help.");
+  const auto usage_failed = [&](const CLI::Error& error) {
+    return failed(kWrongUsage, fmt::format("{} (see {} --help)", error.what(), command_path(program)));
+  };
   try {
     program.parse(argc, argv);
     return kSuccess;
@@ -50,8 +53,14 @@ int run(int argc, char** argv) {
     return program.exit(help);
   } catch (const CLI::RuntimeError& end) {
     return end.get_exit_code();
+  } catch (const CLI::RequiredError& error) {
+    // A command that does not exist says more than that one is missing.
+    const std::vector<std::string> unknown = program.remaining(true);
+    if (unknown.empty()) return usage_failed(error);
+    return failed(kWrongUsage,
+                  fmt::format("there is no command {} (see {} --help)", unknown.front(), command_path(program)));
   } catch (const CLI::Error& error) {
-    return failed(kWrongUsage, fmt::format("{} (see {} --help)", error.what(), command_path(program)));
+    return usage_failed(error);
   } catch (const UsageError& error) {
     return failed(kWrongUsage, error.what());
   } catch (const Error& error) {

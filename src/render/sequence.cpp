@@ -99,8 +99,8 @@ class SequenceRun {
     try {
       draw(shot, index, count, report);
     } catch (const Error& error) {
-      // A picture that cannot be written will not be followed by one that can.
-      if (options_.strict || writing_) throw;
+      // A picture that cannot be written will not be followed by one that can, nor is a setting better for the next.
+      if (options_.strict || writing_ || count == 1 || error.code() == ErrorCode::invalid_argument) throw;
       if (!first_error_) first_error_ = std::current_exception();
       report.problem = error.what();
       if (film_) film_->add(last_picture_);
