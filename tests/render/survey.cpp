@@ -85,7 +85,7 @@ TEST(Guesses, EachNamesTheOptionThatOverridesIt) {
   }
 }
 
-TEST(Settings, TheGroundLiesUnderTheLowestParticles) {
+TEST(Settings, TheGroundHidesTheRoundedLowerEdgeOfTheWater) {
   Frames frames;
   frames.add_cube(1, 0);
   SurveyOptions options;
@@ -93,7 +93,7 @@ TEST(Settings, TheGroundLiesUnderTheLowestParticles) {
   options.spacing = 0.1f;
   const FrameSettings settings = settings_of(survey_frames(frames.found(), options), {});
   EXPECT_EQ(settings.ground.up, vec3(0, 0, 1));
-  EXPECT_NEAR(settings.ground.height, -0.05f, 0.02f);
+  EXPECT_NEAR(settings.ground.height, 0.025f, 0.02f);  // a quarter of a spacing above the lowest particles
 }
 
 TEST(Settings, ATintIsWhatLightHasAfterTheDepthOfTheScene) {
