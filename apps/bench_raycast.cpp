@@ -57,73 +57,84 @@ Measured median_frame(const Particles& particles, const RaycastOptions& options,
   return *middle;
 }
 
-struct PlainTime {
-  double frame_ms = 0;
-  PictureSize measured;
-  double measured_ms = 0;
+/// Every n-th pixel of a view across and down, n odd: its rays are exactly those of the pixels in the middle of the
+/// squares of n x n, of as many whole squares as fit around the picture's centre.
+struct Subgrid {
+  View view;
+  int every = 1;
+  int left = 0, top = 0;  ///< px of the whole picture that its first pixel stands for
 };
 
-View reduced(const View& view, int divisor) {
-  return view.resized(std::max(1, view.width / divisor), std::max(1, view.height / divisor));
+Subgrid subgrid_of(const View& whole, int every) {
+  // An even number of squares fits an even number of pixels around the centre, an odd one an odd number.
+  const auto squares = [&](int pixels) { return pixels / every - ((pixels / every) ^ pixels) % 2; };
+  const int width = squares(whole.width), height = squares(whole.height);
+  Subgrid grid{whole.resized(width, height), every, (whole.width - every * (width - 1)) / 2,
+               (whole.height - every * (height - 1)) / 2};
+  grid.view.half_height *= static_cast<float>(every * height) / static_cast<float>(whole.height);
+  return grid;
 }
 
-/// The plain method's time for the whole picture. Where that takes long, it is measured at a quarter of the width
-/// and height and at an eighth, and the straight line through both is followed: what does not depend on the pixels
-/// (sorting) is not scaled with them.
-PlainTime plain_time(const Particles& particles, const RaycastOptions& options, const View& view) {
+/// The plain method's picture, of every n-th pixel if the whole takes long, and its time for the whole.
+struct PlainFrame {
+  SurfaceBuffers seen;
+  Subgrid grid;
+  double measured_ms = 0;  ///< of the pixels in `grid`, the building included
+  double frame_ms = 0;     ///< of all
+};
+
+/// Where the whole picture takes long it is measured at every fifth pixel across and down and at every eleventh, and
+/// the straight line through both is followed: what does not depend on the pixels (sorting) is not scaled with them.
+PlainFrame plain_frame(const Particles& particles, const RaycastOptions& options, const View& view) {
+  constexpr double kLongMs = 3000;
   const ThreadLimit one_thread(1);
   const auto build_start = Clock::now();
   const auto surface = make_plain_raycast_surface(particles, options);
   const double build_ms = ms_since(build_start);
-  const auto see_ms = [&](const View& at) {
+  PlainFrame frame;
+  const auto see = [&](int every) {
+    frame.grid = subgrid_of(view, every);
     const auto start = Clock::now();
-    static_cast<void>(surface->see(at));
-    return ms_since(start);
+    frame.seen = surface->see(frame.grid.view);
+    const double ms = ms_since(start);
+    frame.measured_ms = build_ms + ms;
+    return ms;
   };
-  const View small = reduced(view, 8), larger = reduced(view, 4);
-  const double small_ms = see_ms(small), larger_ms = see_ms(larger);
   const auto pixels = [](const View& at) { return static_cast<double>(at.width) * at.height; };
-  const double per_pixel =
-      pixels(larger) > pixels(small) ? std::max(0.0, (larger_ms - small_ms) / (pixels(larger) - pixels(small))) : 0.0;
-  const double expected_ms = larger_ms + per_pixel * (pixels(view) - pixels(larger));
-  if (expected_ms < 3000) {
-    const double whole_ms = build_ms + see_ms(view);
-    return {whole_ms, {view.width, view.height}, whole_ms};
+  if (std::min(view.width, view.height) >= 64) {
+    const double few_ms = see(11);
+    const double few = pixels(frame.grid.view);
+    const double more_ms = see(5);
+    const double more = pixels(frame.grid.view);
+    const double expected_ms = more_ms + std::max(0.0, (more_ms - few_ms) / (more - few)) * (pixels(view) - more);
+    frame.frame_ms = build_ms + expected_ms;
+    if (frame.frame_ms > kLongMs) return frame;
   }
-  return {build_ms + expected_ms, {larger.width, larger.height}, build_ms + larger_ms};
+  frame.frame_ms = build_ms + see(1);
+  return frame;
 }
 
 struct Agreement {
-  double hit_mismatch = 0;  ///< fraction of the pixels compared
+  std::size_t pixels = 0;   ///< compared
+  double hit_mismatch = 0;  ///< fraction of them
   double depth_error_p99_spacings = 0;
-  std::size_t pixels = 0;
 };
 
-/// The fast picture against the plain one at every n-th pixel across and down, 65,536 pixels or fewer.
-Agreement agreement(const Particles& particles, const RaycastOptions& options, const View& view,
-                    const SurfaceBuffers& fast) {
-  int every = 1;
-  while ((view.width / every) * (view.height / every) > 65536) ++every;
-  std::vector<vec2> points;
-  std::vector<float> fast_depth;
-  for (int y = every / 2; y < view.height; y += every)
-    for (int x = every / 2; x < view.width; x += every) {
-      points.emplace_back(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-      fast_depth.push_back(fast.depth(x, y));
-    }
-  RaycastOptions depth_only = options;
-  depth_only.want_normals = depth_only.want_thickness = false;
-  const SurfaceBuffers plain = make_plain_raycast_surface(particles, depth_only)->see(view, points);
+/// The fast picture against the plain one, at the pixels that the plain one has.
+Agreement agreement(const SurfaceBuffers& fast, const PlainFrame& plain, float spacing) {
   std::vector<double> errors;
   std::size_t mismatches = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool fast_hit = std::isfinite(fast_depth[i]), plain_hit = std::isfinite(plain.depth[i]);
-    if (fast_hit != plain_hit) ++mismatches;
-    if (fast_hit && plain_hit) errors.push_back(std::abs(fast_depth[i] - plain.depth[i]) / options.spacing);
-  }
+  const Image<float>& depth = plain.seen.depth;
+  for (int y = 0; y < depth.height(); ++y)
+    for (int x = 0; x < depth.width(); ++x) {
+      const float a = fast.depth(plain.grid.left + x * plain.grid.every, plain.grid.top + y * plain.grid.every);
+      const float b = depth(x, y);
+      if (std::isfinite(a) != std::isfinite(b)) ++mismatches;
+      if (std::isfinite(a) && std::isfinite(b)) errors.push_back(std::abs(a - b) / spacing);
+    }
   Agreement result;
-  result.pixels = points.size();
-  result.hit_mismatch = static_cast<double>(mismatches) / static_cast<double>(std::max<std::size_t>(points.size(), 1));
+  result.pixels = depth.size();
+  result.hit_mismatch = static_cast<double>(mismatches) / static_cast<double>(std::max<std::size_t>(depth.size(), 1));
   if (!errors.empty()) {
     const auto p99 = errors.begin() + static_cast<std::ptrdiff_t>((errors.size() - 1) * 99 / 100);
     std::nth_element(errors.begin(), p99, errors.end());
@@ -169,12 +180,12 @@ Json measure(const RaycastArguments& arguments) {
   json["frame_ms"] = fast.frame_ms;
   json["peak_rss_bytes"] = peak;
   if (arguments.iso_sweep) json["iso_sweep"] = iso_sweep(particles, options, view, arguments.frames);
-  const PlainTime plain = plain_time(particles, options, view);
+  const PlainFrame plain = plain_frame(particles, options, view);
   json["plain_frame_ms"] = plain.frame_ms;
-  json["plain_measured_size"] = {plain.measured.width, plain.measured.height};
+  json["plain_measured_size"] = {plain.grid.view.width, plain.grid.view.height};
   json["plain_measured_ms"] = plain.measured_ms;
   json["ratio"] = plain.frame_ms / fast.frame_ms;
-  const Agreement agreed = agreement(particles, options, view, seen);
+  const Agreement agreed = agreement(seen, plain, options.spacing);
   json["compared_pixels"] = agreed.pixels;
   json["hit_mismatch"] = agreed.hit_mismatch;
   json["depth_error_p99_spacings"] = agreed.depth_error_p99_spacings;
@@ -228,8 +239,9 @@ void add_bench_raycast(CLI::App& bench) {
   command->footer(
       "A frame is the building of the surface from the particles and one look at it: depth, normals, thickness.\n"
       "The plain method computes the same surface ray by ray with one thread. Where a whole picture of it takes\n"
-      "more than three seconds it is measured at a quarter of the width and height (plain_measured_size) and at an\n"
-      "eighth, and the time for all pixels follows from both.");
+      "more than three seconds it is measured at every fifth pixel across and down (plain_measured_size) and at\n"
+      "every eleventh, and the time for all pixels follows from both. Both methods' hits and depths are compared\n"
+      "at the pixels that the plain one has computed (compared_pixels).");
   command->callback([arguments] {
     const Json json = measure(*arguments);
     if (arguments->json)
