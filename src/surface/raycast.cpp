@@ -355,10 +355,10 @@ class RaycastSurface final : public Surface {
     return std::max(glm::dot(box.centre() - view.eye, view.forward), field_.options.spacing);
   }
 
-  /// Pixels between the samples of the thickness: two to three samples a spacing in the middle of the water.
+  /// Pixels between the samples of the thickness: one to two samples a spacing in the middle of the water.
   int thickness_stride(const View& view) const {
     if (field_.grid.size() == 0) return 1;
-    return std::clamp(static_cast<int>(field_.options.spacing / view.pixel_size(middle_depth(view)) / 2.0f), 1, 8);
+    return std::clamp(static_cast<int>(field_.options.spacing / view.pixel_size(middle_depth(view)) / 1.4f), 1, 8);
   }
 
   /// Bilinear between the centres of blocks of stride x stride pixels.
