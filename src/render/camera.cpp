@@ -41,20 +41,49 @@ struct Room {
   float x, y;
 };
 
+/// A corner across or up, and along the view.
+struct Seen {
+  float at, z;
+};
+
+/// Where in [low, high] an eye at `z` leaves as much of the picture free on the one side of the corners as on the
+/// other, by bisection: the difference falls as the eye moves.
+float in_the_middle(const std::array<Seen, 8>& corners, float low, float high, float z) {
+  const auto difference = [&](float eye) {
+    float most = -INFINITY, least = INFINITY;
+    for (const Seen& corner : corners) {
+      const float tangent = (corner.at - eye) / std::max(corner.z - z, 1e-20f);
+      most = std::max(most, tangent);
+      least = std::min(least, tangent);
+    }
+    return most + least;
+  };
+  for (int i = 0; i < 40; ++i) {
+    const float middle = 0.5f * (low + high);
+    (difference(middle) > 0 ? low : high) = middle;
+  }
+  return 0.5f * (low + high);
+}
+
 /// The eye of a given orientation nearest to the box that sees all of its corners. With camera coordinates p of the
 /// corners and e of the eye, |p.x - e.x| <= room.x (p.z - e.z), and the same for y, bound e.z from above, each by
-/// itself; the smaller bound holds, and e.x, e.y stand in the middle of what is left.
+/// itself; the smaller bound holds, and the picture's middle is put into what room is left.
 vec3 tightest_eye(const Bounds& bounds, const View& oriented, Room room) {
+  std::array<Seen, 8> across, up;
   float right = -INFINITY, left = -INFINITY, top = -INFINITY, bottom = -INFINITY;
-  for (const vec3 corner : corners_of(bounds)) {
-    const vec3 p{glm::dot(corner, oriented.right), glm::dot(corner, oriented.up), glm::dot(corner, oriented.forward)};
-    right = std::max(right, p.x - room.x * p.z);
-    left = std::max(left, -p.x - room.x * p.z);
-    top = std::max(top, p.y - room.y * p.z);
-    bottom = std::max(bottom, -p.y - room.y * p.z);
+  const std::array<vec3, 8> corners = corners_of(bounds);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const float z = glm::dot(corners[i], oriented.forward);
+    across[i] = {glm::dot(corners[i], oriented.right), z};
+    up[i] = {glm::dot(corners[i], oriented.up), z};
+    right = std::max(right, across[i].at - room.x * z);
+    left = std::max(left, -across[i].at - room.x * z);
+    top = std::max(top, up[i].at - room.y * z);
+    bottom = std::max(bottom, -up[i].at - room.y * z);
   }
   const float z = std::min(-(right + left) / (2 * room.x), -(top + bottom) / (2 * room.y));
-  return 0.5f * (right - left) * oriented.right + 0.5f * (top - bottom) * oriented.up + z * oriented.forward;
+  return in_the_middle(across, right + room.x * z, -left - room.x * z, z) * oriented.right +
+         in_the_middle(up, top + room.y * z, -bottom - room.y * z, z) * oriented.up + z * oriented.forward;
 }
 
 /// Distance from the target at which an eye that looks at it sees all corners.

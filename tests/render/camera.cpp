@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <random>
 
@@ -53,6 +54,24 @@ TEST(FittedView, ShowsEveryCornerOfAnyBoxAndTouchesTheMargin) {
         EXPECT_GE(room, 0.06f - 1e-3f) << i << " " << width << "x" << height;
         EXPECT_LE(room, 0.06f + 1e-3f) << "the water could be larger";
       }
+}
+
+TEST(FittedView, LeavesAsMuchRoomAboveAsBelowAndOnTheLeftAsOnTheRight) {
+  Boxes boxes;
+  for (int i = 0; i < 20; ++i)
+    for (const auto& [width, height] : kSizes) {
+      const Bounds box = boxes.next();
+      const View view = fitted_view(box, Axis::y, {}, 0, width, height);
+      vec2 low{1e9f}, high{-1e9f};
+      for (const vec3 corner : corners_of(box)) {
+        const vec2 at{view.project(corner)};
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+      }
+      const vec2 size{static_cast<float>(width), static_cast<float>(height)};
+      EXPECT_NEAR(low.x / size.x, 1 - high.x / size.x, 2e-3f);
+      EXPECT_NEAR(low.y / size.y, 1 - high.y / size.y, 2e-3f);
+    }
 }
 
 TEST(FittedView, ShowsEveryCornerFromAnySide) {
