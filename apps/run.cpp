@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <memory>
+#include <sstream>
 
 #include "commands.h"
 #include "meniscus/base.h"
@@ -15,6 +17,27 @@ int failed(int code, std::string message) {
   std::cerr << "meniscus: error: " << message << std::endl;
   return code;
 }
+
+/// Help with descriptions broken into lines, whatever the width of the terminal, so that documents can hold it.
+class Help : public CLI::Formatter {
+ public:
+  Help() { column_width(kColumn); }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    std::string wrapped;
+    std::size_t length = 0;
+    std::istringstream words(CLI::Formatter::make_option_desc(option));
+    for (std::string word; words >> word; length += word.size()) {
+      const bool fits = length + 1 + word.size() <= kWidth - kColumn;
+      if (!wrapped.empty()) wrapped += fits ? ' ' : '\n';
+      length = fits ? length + 1 : 0;
+      wrapped += word;
+    }
+    return wrapped;
+  }
+
+ private:
+  static constexpr std::size_t kColumn = 32, kWidth = 112;
+};
 
 /// Which command's help answers an error.
 std::string command_path(const CLI::App& program) {
@@ -31,10 +54,10 @@ std::string command_path(const CLI::App& program) {
 
 int run(int argc, char** argv) {
   CLI::App program("Pictures and films of water from the particles of a simulation", "meniscus");
+  program.formatter(std::make_shared<Help>());
   program.set_version_flag("--version", "meniscus " MENISCUS_VERSION, "Print the version and exit");
   program.set_help_flag("-h,--help", "Print this and exit");
   program.require_subcommand(1);
-  program.get_formatter()->column_width(40);
   add_info(program);
   add_render(program);
   add_simulate(program);

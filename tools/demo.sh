@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 program=${1:-build/release/meniscus}
 frames=data/dam_break_3d
-still=$(find "$frames" -maxdepth 1 -type f -name '*00990*' | sort | head -n 1)
+still=$(find "$frames" -maxdepth 1 -type f -name '*04320*' | sort | head -n 1)
 
 mkdir -p demo
 "$program" render "$still" -o demo/dam_break.png --size 1280x720

@@ -7,6 +7,7 @@ With --check nothing is written; the exit code is 1 if the document is not what 
 """
 
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -21,7 +22,8 @@ a test checks that it is up to date. The [guide](guide.md) explains what the opt
 
 def help_of(program, command):
     done = subprocess.run([program, *command.split(), "--help"], capture_output=True, text=True, check=True)
-    return "\n".join(line.rstrip() for line in done.stdout.strip().splitlines())
+    text = "\n".join(line.rstrip() for line in done.stdout.strip().splitlines())
+    return re.sub(r"\n{3,}", "\n\n", text)
 
 
 def document_of(program):
