@@ -217,7 +217,7 @@ void add_bench_raycast(CLI::App& bench) {
   const auto arguments = std::make_shared<RaycastArguments>();
   command->add_option("--particles", arguments->particles, "Particles in the tank (default: 1000000)")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}));
+      ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}).description(""));
   command
       ->add_option_function<std::string>(
           "--size", [arguments](const std::string& text) { arguments->size = parse_size("--size", text); },
@@ -226,10 +226,10 @@ void add_bench_raycast(CLI::App& bench) {
   command->add_option("--seed", arguments->seed, "Of the particles' places (default: 1)")->type_name("N");
   command->add_option("--repeat", arguments->frames, "Frames that the median is taken of (default: 5)")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000));
+      ->check(CLI::Range(1, 1000).description(""));
   command->add_option("--threads", arguments->threads, "Threads; 0: one a core (default: 0)")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024));
+      ->check(CLI::Range(0, 1024).description(""));
   command
       ->add_option("--instruction-set", arguments->instruction_set,
                    "Vector instructions to use, such as avx3, avx2, sse4 or best (default: best)")

@@ -134,7 +134,7 @@ void PictureArguments::add_picture(CLI::App& command) {
       "The ground under the water (default: chequer)");
   group.number<float>(
       "--ground-height", "METRES", [&](float v) { picture_.ground_height = v; },
-      "Height of the ground along the up axis, m (default: the lowest point of the water)");
+      "Height of the ground along the up axis, m (default: at the lowest particles)");
   group.flag(
       "--no-shadow", [&] { picture_.shadow = false; }, "The water casts no shadow on the ground");
   group.number<float>(
@@ -163,7 +163,7 @@ void PictureArguments::add_camera(CLI::App& command) {
       "side)");
   group.number<float>(
       "--elevation", "DEGREES", [&](float v) { camera.elevation_deg = v; },
-      "Above the horizon, -90 to 90 degrees (default: 20)");
+      "Above the horizon, -90 to 90 degrees (default: 16)");
   group.number<float>(
       "--distance", "METRES", [&](float v) { camera.distance = v; }, "From the target, m (default: fitted)");
   group.number<float>(

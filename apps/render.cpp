@@ -92,13 +92,13 @@ void add_output(CLI::App& command, RenderArguments& arguments) {
       ->required()
       ->type_name("FILE")
       ->group(group);
-  command.add_option("--fps", sequence.video.frames_per_second, "Frames a second of a film (default: 25)")
+  command.add_option("--fps", sequence.video.frames_per_second, "Frames a second of a film, 0.1 to 1000 (default: 25)")
       ->type_name("N")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(CLI::Range(0.1, 1000.0).description(""))
       ->group(group);
   command.add_option("--quality", sequence.video.quality_crf, "Of a film: 0 lossless to 51 worst (default: 18)")
       ->type_name("CRF")
-      ->check(CLI::Range(0, 51))
+      ->check(CLI::Range(0, 51).description(""))
       ->group(group);
   command.add_flag("--resume", sequence.resume, "Leave pictures and films that are there already as they are")
       ->group(group);
@@ -112,9 +112,9 @@ void add_output(CLI::App& command, RenderArguments& arguments) {
       ->type_name("FILE.json")
       ->group(group);
   command.add_flag("--quiet", arguments.quiet, "Say nothing but errors")->group(group);
-  command.add_option("--threads", arguments.threads, "Threads; 0: one a core (default: 0)")
+  command.add_option("--threads", arguments.threads, "Threads, 0 to 1024; 0: one a core (default: 0)")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024))
+      ->check(CLI::Range(0, 1024).description(""))
       ->group(group);
   command
       .add_option_function<std::string>(
