@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <ostream>
 
 #include "meniscus/render.h"
 
@@ -18,6 +19,8 @@ struct GoldenFrame {
   std::string material;
   bool coloured;
 };
+
+void PrintTo(const GoldenFrame& golden, std::ostream* out) { *out << golden.picture; }
 
 class GoldenPicture : public testing::TestWithParam<GoldenFrame> {};
 
