@@ -56,6 +56,7 @@ struct FrameSettings {
   Material material;
   Environment environment{EnvironmentOptions{}};
   Ground ground;
+  Bounds water;        ///< where the water is, m: what light and shadow are fitted to; empty: found in each frame
   bool shadow = true;  ///< the water's soft shadow on the ground
   ToneOptions tone;
   Antialias antialias = Antialias::edges;
@@ -70,6 +71,7 @@ struct FramePicture {
   SurfaceBuffers buffers;                  ///< at the pixel centres; coverage and thickness averaged where antialiased
   StageTimes times;                        ///< one row a stage
   std::size_t particles = 0;               ///< drawn ones
+  std::size_t far_away = 0;                ///< left out, because they are hundreds of thousands of spacings away
   std::pair<float, float> colour_range{};  ///< what the ends of the colour map stand for
 };
 

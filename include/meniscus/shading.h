@@ -10,13 +10,13 @@ namespace meniscus {
 /// What the liquid looks like.
 struct Material {
   std::string name = "water";
-  bool transparent = true;          ///< false: an opaque body of `body` colour
-  float ior = 1.333f;               ///< index of refraction, > 1
-  vec3 extinction{0.0f};            ///< absorption, 1/m per channel (Beer-Lambert)
-  vec3 scattering{0.0f};            ///< turbidity, 1/m per channel: what is scattered shows `body`
-  vec3 body{0.8f};                  ///< linear colour of the diffuse part
-  float roughness = 0.0f;           ///< of the reflection, 0 mirror .. 1
-  float specular = 1.0f;            ///< factor of the Fresnel reflection; 0 switches it off (clay)
+  bool transparent = true;  ///< false: an opaque body of `body` colour
+  float ior = 1.333f;       ///< index of refraction, > 1
+  vec3 extinction{0.0f};    ///< absorption, 1/m per channel (Beer-Lambert)
+  vec3 scattering{0.0f};    ///< turbidity, 1/m per channel: what is scattered shows `body`
+  vec3 body{0.8f};          ///< linear colour of the diffuse part
+  float roughness = 0.0f;   ///< of the reflection, 0 mirror .. 1
+  float specular = 1.0f;    ///< factor of the Fresnel reflection; 0 switches it off (clay)
 };
 
 /// A preset: water, milk, oil, ink, clay, plastic (opaque and coloured), ...
@@ -32,8 +32,9 @@ Image<vec3> shade(const View& view, std::span<const vec2> points, const SurfaceB
 
 /// The water's soft shadow on the ground: the surface's thickness seen from the sun, with Fresnel and
 /// Beer-Lambert losses, blurred by the sun's size, and the sky light that the water takes away around it.
+/// @param region  where the water mostly is, m, so that a few drops far away do not coarsen it; empty: all of it
 std::shared_ptr<const GroundLight> ground_light(const Surface& surface, const Environment& environment,
                                                 const Ground& ground, const Material& material,
-                                                StageTimes* times = nullptr);
+                                                StageTimes* times = nullptr, const Bounds& region = {});
 
 }  // namespace meniscus

@@ -32,7 +32,7 @@ ParticleGrid::ParticleGrid(const Particles& particles, float cell_size)
     const vec3 extent = bounds_.extent();
     const float longest = std::max({extent.x, extent.y, extent.z});
     if (!(longest * per_cell_ < kMostCellsAlongAxis))
-      throw Error(ErrorCode::invalid_argument,
+      throw Error(ErrorCode::limit_exceeded,
                   ErrorDetail{fmt::format("the particles spread over {:.3g} m, too wide for cells of {:.3g} m", longest,
                                           cell_size),
                               {},

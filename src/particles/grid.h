@@ -20,7 +20,7 @@ class ParticleGrid {
 
   /// Sorts the particles.
   /// @param cell_size  edge of a cell, m, > 0
-  /// @throws Error     invalid_argument: cell_size <= 0, or more than 2^20 cells along an axis
+  /// @throws Error     invalid_argument: cell_size <= 0; limit_exceeded: more than 2^20 cells along an axis
   ParticleGrid(const Particles& particles, float cell_size);
 
   std::size_t size() const { return count_; }

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "meniscus/render.h"
 #include "render/antialias.h"
 #include "render/show.h"
@@ -11,8 +14,36 @@ namespace {
 Scene lit_scene(const Surface& surface, const FrameSettings& settings, StageTimes* times) {
   Scene scene(settings.environment, settings.ground);
   if (settings.ground.visible && settings.shadow && !surface.bounds().empty())
-    scene.set_ground_light(ground_light(surface, settings.environment, settings.ground, settings.material, times));
+    scene.set_ground_light(
+        ground_light(surface, settings.environment, settings.ground, settings.material, times, settings.water));
   return scene;
+}
+
+/// The particles without those too far away to be sorted together with the rest; nothing if there are none.
+std::optional<Particles> without_far(const Particles& particles, const FrameSettings& settings) {
+  const float reach = 4e5f * settings.surface.spacing;
+  const vec3 extent = particles.bounds().extent();
+  if (std::max({extent.x, extent.y, extent.z}) <= 2 * reach) return std::nullopt;
+  const vec3 centre = robust_bounds(particles).centre();
+  const auto is_near = [&](std::size_t i) {
+    const vec3 off = particles.position(i) - centre;
+    return std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) < reach;
+  };
+  Particles near;
+  for (const Attribute& attribute : particles.attributes)
+    near.attributes.push_back({attribute.name, attribute.components, {}});
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (!is_near(i)) continue;
+    near.x.push_back(particles.x[i]);
+    near.y.push_back(particles.y[i]);
+    near.z.push_back(particles.z[i]);
+    for (std::size_t a = 0; a < near.attributes.size(); ++a) {
+      const auto components = static_cast<std::size_t>(near.attributes[a].components);
+      const float* values = particles.attributes[a].values.data() + i * components;
+      near.attributes[a].values.insert(near.attributes[a].values.end(), values, values + components);
+    }
+  }
+  return near;
 }
 
 void draw_colour_bar(FramePicture& frame, const ColourBy& colour) {
@@ -45,6 +76,10 @@ FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
     const float reach =
         surface_options.smoothing_length > 0 ? surface_options.smoothing_length : 2 * surface_options.spacing;
     kept = without_isolated(all, reach, settings.drop_isolated);
+  }
+  if (std::optional<Particles> near = without_far(kept ? *kept : all, settings)) {
+    frame.far_away = (kept ? *kept : all).size() - near->size();
+    kept = std::move(near);
   }
   const Particles& particles = kept ? *kept : all;
   frame.particles = particles.size();
@@ -82,7 +117,12 @@ FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
   if (settings.show != Show::water) frame.radiance = shown(settings.show, settings.view, frame.buffers);
   frame.picture =
       developed(frame.radiance, settings.show == Show::water ? settings.tone : ToneOptions{0, ToneCurve::linear});
-  if (settings.legend && !colours.empty()) draw_colour_bar(frame, *settings.colour);
+  // A bar explains colours of a map: not those that particles bring along, nor those of a buffer.
+  const Attribute* attribute = settings.colour ? all.find(settings.colour->attribute) : nullptr;
+  const bool own_colours = attribute && attribute->components == 3 &&
+                           (attribute->name == "color" || attribute->name == "colour" || attribute->name == "Cd");
+  if (settings.legend && !colours.empty() && !own_colours && settings.show == Show::water)
+    draw_colour_bar(frame, *settings.colour);
   return frame;
 }
 

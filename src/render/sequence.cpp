@@ -122,6 +122,9 @@ class SequenceRun {
     settings_->view = view_of(survey_, picture_, index, count, options_.video.frames_per_second);
     FramePicture frame = render_frame(*particles, *settings_);
     report.particles = frame.particles;
+    if (frame.far_away > 0)
+      report.notes.push_back(
+          fmt::format("{} particles left out: they are too far away from the others", frame.far_away));
     report.width = frame.picture.width();
     report.height = frame.picture.height();
     report.times.add(frame.times);

@@ -72,7 +72,11 @@ float depth_scale(const Survey& survey, const PictureOptions& options) {
 float ground_height(const Survey& survey, const PictureOptions& options) {
   if (options.ground_height) return *options.ground_height;
   if (survey.bounds.empty()) return 0;
-  return glm::dot(survey.bounds.low, direction_of(survey.up.axis)) + 0.25f * spacing_of(survey, options);
+  const float lowest = glm::dot(survey.bounds.low, direction_of(survey.up.axis));
+  // A few drops stand on no floor: the ground touches them from below.
+  constexpr std::size_t kFewParticles = 64;
+  const float above = survey.most_particles < kFewParticles ? -0.65f : 0.25f;
+  return lowest + above * spacing_of(survey, options);
 }
 
 vec2 sun_deg(const Survey& survey, const PictureOptions& options) {
@@ -114,6 +118,7 @@ FrameSettings settings_of(const Survey& survey, const PictureOptions& options) {
   environment.sun_direction = direction_towards(survey.up.axis, sun.x, sun.y);
   settings.environment = Environment(environment);
   settings.ground = ground_of(survey, options);
+  settings.water = survey.bounds.grown(2 * settings.surface.spacing);
   settings.shadow = options.shadow;
   settings.tone = options.tone;
   settings.antialias = options.antialias;

@@ -86,9 +86,14 @@ class Unshadowed : public GroundLight {
 }  // namespace
 
 std::shared_ptr<const GroundLight> ground_light(const Surface& surface, const Environment& environment,
-                                                const Ground& ground, const Material& material, StageTimes* times) {
+                                                const Ground& ground, const Material& material, StageTimes* times,
+                                                const Bounds& region) {
   const StageTimer timer(times, "shadow");
-  const Bounds bounds = surface.bounds();
+  Bounds bounds = surface.bounds();
+  if (!region.empty() && !bounds.empty()) {
+    const Bounds common{glm::max(bounds.low, region.low), glm::min(bounds.high, region.high)};
+    if (!common.empty()) bounds = common;
+  }
   if (bounds.empty()) return std::make_shared<Unshadowed>();
 
   // A sun below or at the horizon throws no shadow that could be drawn; what is left is the sky's, from above.

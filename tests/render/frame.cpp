@@ -211,6 +211,40 @@ TEST(SilhouettePixels, FollowTheLineWhereTheGroundHidesTheWater) {
   EXPECT_EQ(silhouette_pixels(view, seen, scene, 0.5f), expected);
 }
 
+TEST(RenderFrame, AParticleThatFlewAwayDoesNotStopThePicture) {
+  Particles tank = synthetic_tank(4000);
+  PictureOptions options;
+  options.width = 64;
+  options.height = 48;
+  const FrameSettings settings = settings_of(survey_particles(tank), options);
+  const Image<Rgb8> without = render_frame(tank, settings).picture;
+  for (const float far : {1e6f, 1e30f}) {
+    Particles with = tank;
+    with.x.push_back(far);
+    with.y.push_back(0);
+    with.z.push_back(0);
+    const FramePicture frame = render_frame(with, settings);
+    EXPECT_EQ(frame.far_away, 1u) << far;
+    EXPECT_GT(compare(frame.picture, without).psnr_db, 60) << far;
+  }
+}
+
+TEST(RenderFrame, AFewDropsFarAsideLeaveTheShadowAsItIs) {
+  Particles tank = synthetic_tank(4000);
+  PictureOptions options;
+  options.width = 96;
+  options.height = 64;
+  const FrameSettings settings = settings_of(survey_particles(tank), options);
+  const Image<Rgb8> without = render_frame(tank, settings).picture;
+  const float width = tank.bounds().extent().x;
+  for (const float side : {-30.0f, 30.0f}) {
+    tank.x.push_back(side * width);
+    tank.y.push_back(2 * width);
+    tank.z.push_back(0);
+  }
+  EXPECT_GT(compare(render_frame(tank, settings).picture, without).psnr_db, 45);
+}
+
 TEST(Shown, BuffersAreColoursOverWhite) {
   FrameSettings settings;
   const Particles ball = [] {
