@@ -312,7 +312,12 @@ class RaycastSurface final : public Surface {
     }
     normals_packet(field_, points, mask, towards, thread_list(), normals);
     for (int l = 0; l < kPacket; ++l)
-      if ((mask >> l) & 1u) buffers.normal[block.targets[l]] = {normals.x[l], normals.y[l], normals.z[l]};
+      if ((mask >> l) & 1u) {
+        // A ray that starts in the water meets the face that the view's plane cuts.
+        const bool cut = buffers.depth[block.targets[l]] <= 0.0f && !buffers.eye_in_water;
+        buffers.normal[block.targets[l]] =
+            cut ? vec3{towards.x[l], towards.y[l], towards.z[l]} : vec3{normals.x[l], normals.y[l], normals.z[l]};
+      }
     if (!field_.has_colours()) return;
     PacketPoints colours;
     colours_packet(field_, points, mask, thread_list(), colours);

@@ -64,7 +64,8 @@ class PlainRaycastSurface final : public Surface {
         if (!(buffers.depth[i] < kInfinity)) continue;
         const Ray ray = rays[i];
         const vec3 point = ray.origin + buffers.depth[i] * ray.direction;
-        buffers.normal[i] = normal_at(point, -ray.direction);
+        const bool cut = buffers.depth[i] <= 0.0f && !buffers.eye_in_water;  // by the view's plane
+        buffers.normal[i] = cut ? -ray.direction : normal_at(point, -ray.direction);
         if (field_.has_colours()) buffers.colour[i] = colour_at(point);
       }
       if (points.empty() && field_.options.filter_radius > 0) {

@@ -78,6 +78,8 @@ TEST(ParallelRays, ThatStartInTheWaterMeetItAtOnce) {
     const SurfaceBuffers seen = make_raycast_surface(particles, with)->see(view);
     expect_consistent(seen);
     for (const float depth : seen.depth) EXPECT_EQ(depth, 0.0f) << cull;
+    // The face that the plane cuts is flat.
+    for (const vec3 normal : seen.normal) EXPECT_GT(normal.z, 0.999f) << cull;
   }
 }
 
