@@ -71,6 +71,8 @@ int run(int argc, char** argv) {
   };
   try {
     program.parse(argc, argv);
+    std::cout.flush();
+    if (!std::cout) return failed(kFailed, "cannot write to the standard output");
     return kSuccess;
   } catch (const CLI::Success& help) {  // --help and --version
     return program.exit(help);
