@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "meniscus/base.h"
+#include "meniscus/output.h"
 
 namespace meniscus::apps {
 namespace {
@@ -53,6 +54,7 @@ std::string command_path(const CLI::App& program) {
 }  // namespace
 
 int run(int argc, char** argv) {
+  remove_temporary_files_when_stopped();
   CLI::App program("Pictures and films of water from the particles of a simulation", "meniscus");
   program.formatter(std::make_shared<Help>());
   program.set_version_flag("--version", "meniscus " MENISCUS_VERSION, "Print the version and exit");

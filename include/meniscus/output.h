@@ -46,4 +46,8 @@ class VideoWriter {
   std::unique_ptr<Parts> parts_;
 };
 
+/// Makes SIGINT, SIGTERM and SIGHUP remove the temporary files that are open and then end the process as they do by
+/// default. For programs; the library alone leaves signals as they are.
+void remove_temporary_files_when_stopped();
+
 }  // namespace meniscus

@@ -3,7 +3,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -23,7 +27,46 @@ fs::path followed(const fs::path& target) {
   return behind.empty() ? target : behind;
 }
 
+/// The files that are there now, where a signal handler can read them: no locks, no allocation. More than fit are
+/// only not removed when the program is stopped.
+struct Slot {
+  std::atomic<bool> taken{false};
+  std::atomic<bool> named{false};
+  char path[4096];
+};
+std::array<Slot, 16> slots;
+
+void remember(const std::string& path) {
+  if (path.size() >= sizeof Slot::path) return;
+  for (Slot& slot : slots) {
+    if (slot.taken.exchange(true)) continue;
+    std::memcpy(slot.path, path.c_str(), path.size() + 1);
+    slot.named = true;
+    return;
+  }
+}
+
+void forget(const std::string& path) {
+  for (Slot& slot : slots)
+    if (slot.named && path == slot.path) {
+      slot.named = false;
+      slot.taken = false;
+      return;
+    }
+}
+
+extern "C" void remove_and_stop(int number) {
+  for (Slot& slot : slots)
+    if (slot.named) unlink(slot.path);
+  std::signal(number, SIG_DFL);
+  std::raise(number);
+}
+
 }  // namespace
+
+void remove_temporary_files_when_stopped() {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, remove_and_stop);
+}
 
 Error write_failed(const std::string& target, int error_number) {
   ErrorDetail detail;
@@ -58,6 +101,7 @@ TemporaryFile::TemporaryFile(const std::string& target) : target_(target) {
     if (descriptor >= 0) {
       close(descriptor);
       path_ = path;
+      remember(path_);
       return;
     }
     if (errno != EEXIST || attempt == kMostAttempts) throw write_failed(target, errno);
@@ -65,11 +109,14 @@ TemporaryFile::TemporaryFile(const std::string& target) : target_(target) {
 }
 
 TemporaryFile::~TemporaryFile() {
-  if (!path_.empty()) unlink(path_.c_str());
+  if (path_.empty()) return;
+  unlink(path_.c_str());
+  forget(path_);
 }
 
 void TemporaryFile::commit() {
   if (std::rename(path_.c_str(), final_path_.c_str()) != 0) throw write_failed(target_, errno);
+  forget(path_);
   path_.clear();
 }
 

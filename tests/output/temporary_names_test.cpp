@@ -1,4 +1,6 @@
 #include <sys/stat.h>
+#include <csignal>
+#include <cstdlib>
 
 #include "meniscus/output.h"
 #include "output/scratch.h"
@@ -50,6 +52,19 @@ TEST_P(EveryWriter, LeavesOnlyTheFileItself) {
   const Scratch scratch;
   GetParam()(scratch / "a file");
   EXPECT_EQ(scratch.names(), std::vector<std::string>{"a file"});
+}
+
+TEST(StoppedProgram, LeavesNoTemporaryFile) {
+  const Scratch scratch;
+  EXPECT_EXIT(
+      {
+        remove_temporary_files_when_stopped();
+        const VideoWriter film(scratch / "film.mp4", kSize, kSize, {});
+        if (scratch.names().size() != 1) std::exit(1);  // the temporary file is there
+        std::raise(SIGTERM);
+      },
+      testing::KilledBySignal(SIGTERM), "");
+  EXPECT_TRUE(scratch.names().empty());
 }
 
 TEST_P(EveryWriter, SaysWhyAFileCannotBeMade) {
