@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "meniscus/render.h"
+#include "particles/chosen.h"
 #include "render/antialias.h"
 #include "render/show.h"
 
@@ -29,21 +30,9 @@ std::optional<Particles> without_far(const Particles& particles, const FrameSett
     const vec3 off = particles.position(i) - centre;
     return std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) < reach;
   };
-  Particles near;
-  for (const Attribute& attribute : particles.attributes)
-    near.attributes.push_back({attribute.name, attribute.components, {}});
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    if (!is_near(i)) continue;
-    near.x.push_back(particles.x[i]);
-    near.y.push_back(particles.y[i]);
-    near.z.push_back(particles.z[i]);
-    for (std::size_t a = 0; a < near.attributes.size(); ++a) {
-      const auto components = static_cast<std::size_t>(near.attributes[a].components);
-      const float* values = particles.attributes[a].values.data() + i * components;
-      near.attributes[a].values.insert(near.attributes[a].values.end(), values, values + components);
-    }
-  }
-  return near;
+  std::vector<std::uint8_t> kept(particles.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = is_near(i);
+  return chosen(particles, kept);
 }
 
 void draw_colour_bar(FramePicture& frame, const ColourBy& colour) {

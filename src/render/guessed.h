@@ -5,6 +5,9 @@
 
 namespace meniscus {
 
+/// Fewer particles than this are a few drops, which stand on no floor.
+constexpr std::size_t kFewParticles = 64;
+
 std::string material_name(const PictureOptions& options);
 /// m; positive even without particles.
 float spacing_of(const Survey& survey, const PictureOptions& options);

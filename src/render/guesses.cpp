@@ -33,9 +33,10 @@ std::vector<Guess> guesses_of(const Survey& survey, const PictureOptions& option
                      smoothing > 0 ? "given" : "twice the spacing", "--smoothing-length METRES"});
   guesses.push_back({"up axis", std::string(name_of(survey.up.axis)), survey.up.reasoning, "--up x|y|z"});
   guesses.push_back({"ground", metres(ground_height(survey, options)),
-                     options.ground_height        ? "given"
-                     : survey.most_particles < 64 ? "just under the lowest drop"
-                                                  : "a quarter of a spacing above the lowest particles of the sequence",
+                     options.ground_height ? "given"
+                     : survey.most_particles < kFewParticles
+                         ? "just under the lowest drop"
+                         : "a quarter of a spacing above the lowest particles of the sequence",
                      "--ground-height METRES"});
   guesses.push_back(camera_guess(survey, options));
   const vec2 sun = sun_deg(survey, options);

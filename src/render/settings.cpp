@@ -74,7 +74,6 @@ float ground_height(const Survey& survey, const PictureOptions& options) {
   if (survey.bounds.empty()) return 0;
   const float lowest = glm::dot(survey.bounds.low, direction_of(survey.up.axis));
   // A few drops stand on no floor: the ground touches them from below.
-  constexpr std::size_t kFewParticles = 64;
   const float above = survey.most_particles < kFewParticles ? -0.65f : 0.25f;
   return lowest + above * spacing_of(survey, options);
 }
