@@ -36,13 +36,13 @@ enum class ErrorCode {
 
 /// What went wrong, in parts; only `problem` is required.
 struct ErrorDetail {
-  std::string problem;                      ///< one clause: "the file ends inside its point list"
-  std::string expected;                     ///< "12,000 bytes of positions"
-  std::string found;                        ///< "7,312 bytes"
-  std::string path;                         ///< file that the error is about
-  std::optional<std::uint64_t> byte_offset; ///< where in the file, bytes from its start (after decompression)
-  std::optional<std::uint64_t> line;        ///< where in a text file, from 1
-  std::string advice;                       ///< what to do: "write the frame again"
+  std::string problem;                       ///< one clause: "the file ends inside its point list"
+  std::string expected;                      ///< "12,000 bytes of positions"
+  std::string found;                         ///< "7,312 bytes"
+  std::string path;                          ///< file that the error is about
+  std::optional<std::uint64_t> byte_offset;  ///< where in the file, bytes from its start (after decompression)
+  std::optional<std::uint64_t> line;         ///< where in a text file, from 1
+  std::string advice;                        ///< what to do: "write the frame again"
 };
 
 /// The one exception type of the library. what() joins the parts into one line:
@@ -67,7 +67,9 @@ class Image {
  public:
   Image() = default;
   Image(int width, int height, T fill = T{})
-      : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
+      : width_(width),
+        height_(height),
+        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
   int width() const { return width_; }
   int height() const { return height_; }
   bool empty() const { return pixels_.empty(); }
@@ -117,7 +119,7 @@ struct Bounds {
 
 // --- Views -------------------------------------------------------------------------------------------------
 
-enum class Projection { perspective, orthographic };
+enum class Projection { perspective, orthographic, cube };
 
 /// One ray: `direction` is a unit vector.
 struct Ray {
@@ -125,27 +127,32 @@ struct Ray {
   vec3 direction;
 };
 
-/// What the world is seen through: an eye with a picture plane, or a plane alone.
+/// What the world is seen through: an eye with a picture plane, a plane alone, or a cube around the eye.
+///
+/// A cube view shows six square faces side by side, width = 6 height: +right, -right, +up, -up, +forward, -forward;
+/// each is the perspective view of face().
 ///
 /// Picture coordinates are pixels, (0, 0) at the top left corner of the picture, so that the centre of the
 /// first pixel is (0.5, 0.5). right, up and forward are orthonormal, world space.
 struct View {
   Projection projection = Projection::perspective;
-  int width = 0;           ///< px
-  int height = 0;          ///< px
-  vec3 eye{0.0f};          ///< perspective: the eye. orthographic: the centre of the plane where rays start
+  int width = 0;   ///< px
+  int height = 0;  ///< px
+  vec3 eye{0.0f};  ///< perspective: the eye. orthographic: the centre of the plane where rays start
   vec3 right{1, 0, 0};
   vec3 up{0, 1, 0};
   vec3 forward{0, 0, -1};
   /// Half of the picture's height: perspective: at distance 1 along forward (the tangent of half the vertical
-  /// field of view); orthographic: in metres.
+  /// field of view); orthographic: in metres; cube: 1.
   float half_height = 0.5f;
 
   /// The ray through a point of the picture.
   Ray ray(vec2 picture_point) const;
-  /// Where a world point lies in the picture: x, y in px and the depth along forward in m. The x and y of a
-  /// point behind a perspective eye are meaningless; test z > 0.
+  /// Where a world point lies in the picture: x, y in px and the depth along forward (of the face, in a cube view)
+  /// in m. The x and y of a point behind a perspective eye are meaningless; test z > 0.
   vec3 project(vec3 point) const;
+  /// Cube views: the perspective view of one of the six faces, 0 .. 5, height x height px.
+  View face(int index) const;
   /// Size in the world of one pixel at `depth` m along forward.
   float pixel_size(float depth) const;
   /// The same picture at another resolution of the same aspect ratio.
@@ -161,6 +168,10 @@ View perspective_view(vec3 eye, vec3 target, vec3 up_hint, float vertical_fov, i
 /// Orthographic view from a plane through `eye` towards `target`; the picture is `world_height` m high.
 View orthographic_view(vec3 eye, vec3 target, vec3 up_hint, float world_height, int width, int height);
 
+/// Cube view from `eye`; `size` px is the edge of a face. Axes are those of the world: right x, up y, forward -z.
+/// @throws Error invalid_argument: size < 1
+View cube_view(vec3 eye, int size);
+
 // --- Particles ---------------------------------------------------------------------------------------------
 
 /// One per-particle attribute: `components` floats for each particle, interleaved.
@@ -172,14 +183,14 @@ struct Attribute {
 
 /// The particles of one frame: structure of arrays, SI units.
 struct Particles {
-  std::vector<float> x, y, z;            ///< m; all finite
-  std::vector<Attribute> attributes;     ///< each as long as x times its components
-  std::optional<double> time;            ///< s, if the file tells
-  std::optional<Axis> up;                ///< if the file tells
-  std::optional<float> spacing;          ///< m, if the file tells
-  std::string format;                    ///< "bgeo", "xyz", "vtk", "ply", "hdf5"
-  std::size_t dropped_non_finite = 0;    ///< particles that the reader left out: NaN or infinite positions
-  std::vector<std::string> notes;        ///< what a user should be told about the reading
+  std::vector<float> x, y, z;          ///< m; all finite
+  std::vector<Attribute> attributes;   ///< each as long as x times its components
+  std::optional<double> time;          ///< s, if the file tells
+  std::optional<Axis> up;              ///< if the file tells
+  std::optional<float> spacing;        ///< m, if the file tells
+  std::string format;                  ///< "bgeo", "xyz", "vtk", "ply", "hdf5"
+  std::size_t dropped_non_finite = 0;  ///< particles that the reader left out: NaN or infinite positions
+  std::vector<std::string> notes;      ///< what a user should be told about the reading
 
   std::size_t size() const { return x.size(); }
   bool empty() const { return x.empty(); }

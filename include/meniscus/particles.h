@@ -44,13 +44,14 @@ vec3 colormap_at(Colormap map, float t);
 
 /// How particles get their colours.
 struct ColourBy {
-  std::string attribute;                         ///< a vector's magnitude is taken, except for colours
+  std::string attribute;  ///< a vector's magnitude is taken, except for colours
   Colormap colormap = Colormap::viridis;
   std::optional<std::pair<float, float>> range;  ///< else that of the values
 };
 
 /// One linear colour a particle. An attribute named "color", "colour" or "Cd" of 3 components is taken as
-/// linear colours themselves (negative parts and NaN as 0). One value for all is the middle of the map, NaN its lower end.
+/// linear colours themselves (negative parts and NaN as 0). One value for all is the middle of the map, NaN its lower
+/// end.
 /// @param range_used  what 0 and 1 of the map stand for
 /// @throws Error not_found: no such attribute; the message lists those that there are. invalid_argument: an attribute
 ///         without a value for every particle

@@ -5,6 +5,7 @@
 /// render_files() does all of it in one call.
 #pragma once
 
+#include <glm/mat4x4.hpp>
 #include <memory>
 
 #include "meniscus/base.h"
@@ -30,7 +31,8 @@ Antialias antialias_of(std::string_view name);
 
 /// How the water is found in the particles.
 enum class SurfaceMethod {
-  raycast,  ///< the iso-surface of their density [Xiao2017]
+  raycast,  ///< the iso-surface of their density, cast along rays [Xiao2017]
+  surfels,  ///< the iso-surface of their density, sampled by points [Iwasaki2008]
   spheres,  ///< not at all: one ball a particle, to look at the raw data
 };
 /// @throws Error invalid_argument
@@ -56,8 +58,15 @@ struct FrameSettings {
   Material material;
   Environment environment{EnvironmentOptions{}};
   Ground ground;
-  Bounds water;        ///< where the water is, m: what light and shadow are fitted to; empty: found in each frame
-  bool shadow = true;  ///< the water's soft shadow on the ground
+  Tank tank;
+  std::vector<PlacedSolid> solids;
+  std::vector<PointLight> lamps;
+  OpticsOptions optics;
+  bool caustics = true;  ///< of transparent materials; else their soft shadow
+  CausticsOptions caustics_options;
+  SurfelOptions surfels;  ///< of SurfaceMethod::surfels; what is 0 is taken from `surface`
+  Bounds water;           ///< where the water is, m: what light and shadow are fitted to; empty: found in each frame
+  bool shadow = true;     ///< the water's soft shadow on the ground
   ToneOptions tone;
   Antialias antialias = Antialias::edges;
   bool legend = false;    ///< a colour bar, where `colour` is set
@@ -175,6 +184,37 @@ Survey survey_frames(const FrameSequence& sequence, const SurveyOptions& options
 /// The same of one frame in memory.
 Survey survey_particles(const Particles& particles, const SurveyOptions& options = {});
 
+// --- Solid bodies of a sequence ----------------------------------------------------------------------------
+
+/// A solid body as a user names it.
+struct BodyOptions {
+  std::string path;   ///< of a mesh; with `{}` or `{:04}` for the frame's number: one file a frame
+  std::string shape;  ///< instead of a path: "box", "sphere" or "cylinder" (along y), 1 m in size around the origin
+  glm::mat4 world_from_body{1.0f};
+  /// One transform a frame, applied before world_from_body; the last one holds on. Empty: the body stands still.
+  std::vector<glm::mat4> frames;
+  std::optional<SolidMaterial> material;  ///< instead of the file's own
+};
+
+/// The bodies of a sequence: read once, placed for each frame; those of one file a frame are read as they come.
+class Bodies {
+ public:
+  /// @throws Error  as read_mesh() and make_solid(), for bodies that stand in one file; invalid_argument: neither path
+  ///                nor shape, or both; an unknown shape
+  explicit Bodies(std::vector<BodyOptions> bodies);
+  /// @param index   place in the film, from 0
+  /// @param number  in the particle file's name; what `{}` stands for
+  /// @param notes   what a user should be told: a body whose file of this frame is missing is left out
+  std::vector<PlacedSolid> at(std::size_t index, std::int64_t number, std::vector<std::string>& notes) const;
+  bool empty() const { return bodies_.empty(); }
+  /// Whether the bodies are the same in all frames.
+  bool still() const;
+
+ private:
+  std::vector<BodyOptions> bodies_;
+  std::vector<std::shared_ptr<const Solid>> solids_;  ///< one a body; null where there is a file a frame
+};
+
 // --- What a user may set -----------------------------------------------------------------------------------
 
 enum class GroundStyle { chequer, plain, none };
@@ -199,6 +239,19 @@ struct PictureOptions {
   GroundStyle ground = GroundStyle::chequer;
   std::optional<float> ground_height;  ///< m; default the lowest point of the water
   bool shadow = true;
+  std::optional<float> ior;           ///< index of refraction, > 1; default the material's
+  std::optional<float> roughness;     ///< of the water's reflection, 0 .. 1; default the material's
+  std::optional<vec3> ground_albedo;  ///< of the plane, or of the brighter squares (the others are 0.7 of it)
+  float sun_scale = 1;                ///< factor of the sun's light, >= 0
+  std::vector<BodyOptions> bodies;
+  TankStyle tank = TankStyle::none;
+  std::optional<Bounds> tank_inside;  ///< m; default around the particles of all frames
+  std::optional<vec3> tank_albedo;    ///< of the tiles
+  std::vector<PointLight> lamps;
+  OpticsOptions optics;
+  bool caustics = true;
+  CausticsOptions caustics_options;
+  SurfelOptions surfels;
   CameraOptions camera;
   std::optional<CameraPath> path;  ///< goes before `camera`
   ToneOptions tone;
@@ -291,6 +344,39 @@ SequenceReport render_sequence(const FrameSequence& sequence, const Survey& surv
 /// Files, directories, globs or patterns in; a picture, pictures or a film out.
 SequenceReport render_files(std::span<const std::string> what, const std::string& output,
                             const PictureOptions& picture = {});
+
+// --- Scene files -------------------------------------------------------------------------------------------
+
+/// Waves in a tank, made up rather than simulated.
+struct WavesOptions {
+  std::size_t particles = 100000;
+  std::size_t frames = 50;
+  double frames_per_second = 25;
+  vec3 size{2.0f, 0.5f, 1.0f};  ///< m; of the still water, y up, its lower corner at the origin
+  float height = 0.06f;         ///< m, of the waves from the still level
+};
+
+/// A picture or a film described in a JSON file: docs/scene_file.md.
+struct SceneFile {
+  std::vector<std::string> frames;  ///< what find_frames() takes, relative to the working directory
+  std::optional<std::int64_t> first, last, every;
+  std::optional<WavesOptions> waves;  ///< water that is made up, instead of frames
+  std::optional<float> spacing;       ///< m
+  std::optional<Axis> up;
+  PictureOptions picture;
+  std::string output;  ///< empty: not said
+  VideoOptions video;
+};
+
+/// Reads a scene file. Every field may be missing; paths in it are relative to its own folder.
+/// @throws Error  not_found; malformed_file with line and field: not JSON, an unknown field (with the nearest known
+///                name), a value of the wrong kind or outside its range
+SceneFile read_scene_file(const std::string& path);
+
+/// Water with waves as particles on a displaced lattice, as synthetic_tank() makes them: superposed dynamic waves that
+/// obey the dispersion of gravity waves over the tank's depth and are reflected by its walls.
+/// @param time  s
+Particles synthetic_waves(const WavesOptions& options, double time);
 
 // --- A scene for measurements ------------------------------------------------------------------------------
 

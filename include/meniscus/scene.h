@@ -1,7 +1,10 @@
-/// What surrounds the water: the sky or an environment map, the sun, the ground.
+/// What surrounds the water: the sky or an environment map, the sun, lamps, the ground, a tank, solid bodies.
 #pragma once
 
+#include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <memory>
+#include <vector>
 
 #include "meniscus/base.h"
 
@@ -59,21 +62,18 @@ struct Ground {
   float fade_radius = 0;      ///< m from the centre at which the plane has faded into the horizon; 0: never
 };
 
-/// How much sun and sky light reaches the ground under and beside the water; made by shading/.
-class GroundLight {
+/// What the water does to the light that falls on the solids under and beside it; made by shading/.
+class WaterLight {
  public:
-  virtual ~GroundLight() = default;
-  /// Fraction of the sun's light that arrives at a point of the ground, per channel: in [0, 1] in shadow, above 1
-  /// where water gathers light.
-  virtual vec3 sun(vec3 point) const = 0;
-  /// Fraction of the sky's light, per channel, in [0, 1].
-  virtual vec3 sky(vec3 point) const = 0;
-  /// Both at once, which a table gives for the price of one.
-  struct Fractions {
-    vec3 sun;
-    vec3 sky;
+  struct Light {
+    vec3 sun{1.0f};  ///< fraction of the sun's light that arrives unbent: 0 behind water that is drawn as caustics
+    vec3 sky{1.0f};  ///< fraction of the sky's light, in [0, 1]
+    vec3 refracted{0.0f};  ///< irradiance of light bent by the water on a surface with the normal asked for
+    vec3 lamps{1.0f};      ///< fraction of the point lights' light that arrives unbent
   };
-  virtual Fractions at(vec3 point) const { return {sun(point), sky(point)}; }
+  virtual ~WaterLight() = default;
+  /// @param normal  unit, of the lit side
+  virtual Light at(vec3 point, vec3 normal) const = 0;
 };
 
 /// A ray with a width: `width` m at its origin, growing by `spread` m per metre of its length.
@@ -82,31 +82,155 @@ struct Beam {
   float spread = 0;
 };
 
-/// What is seen behind and around the water.
+// --- Solid bodies --------------------------------------------------------------------------------------------
+
+/// What a solid body is made of: a diffuse body, under a clear coat where roughness < 1.
+struct SolidMaterial {
+  vec3 albedo{0.6f};    ///< linear; factor of the texture where there is one
+  std::string texture;  ///< a PNG, JPEG, TGA or BMP file; empty: none
+  float roughness = 1;  ///< of the coat's mirror image, 0 a mirror .. 1 no coat at all
+  float ior = 1.5f;     ///< of the coat, > 1
+
+  bool operator==(const SolidMaterial&) const = default;
+};
+
+/// Triangles, as read from a file or made.
+struct Mesh {
+  std::vector<vec3> positions;           ///< m
+  std::vector<vec3> normals;             ///< unit, one a position; empty: flat faces
+  std::vector<vec2> texture_points;      ///< one a position, (0, 0) the lower left corner of the texture; may be empty
+  std::vector<std::uint32_t> corners;    ///< three a triangle, each < positions.size()
+  std::vector<SolidMaterial> materials;  ///< empty: one default material
+  std::vector<std::uint32_t> material_of;  ///< one a triangle, each < materials.size(); empty: all the first
+};
+
+/// Reads OBJ, PLY, glTF and what else Assimp knows; nodes' transforms are applied, polygons cut into triangles.
+/// @throws Error not_found, malformed_file, unsupported (a kind of file), limit_exceeded
+Mesh read_mesh(const std::string& path);
+/// Simple shapes, closed, normals outwards.
+Mesh box_mesh(vec3 low, vec3 high);
+Mesh sphere_mesh(vec3 centre, float radius, int segments = 48);
+Mesh cylinder_mesh(vec3 bottom, vec3 top, float radius, int segments = 48);
+
+/// A mesh made ready for rays: immutable, its textures loaded, its acceleration structure built. Bodies that do not
+/// change are made once and placed anew in each frame.
+class Solid {
+ public:
+  virtual ~Solid() = default;
+  virtual const Mesh& mesh() const = 0;
+  virtual Bounds bounds() const = 0;
+};
+/// @throws Error  invalid_argument: indices out of range, lists of the wrong length, positions that are not finite;
+///                not_found, malformed_file: a texture
+std::shared_ptr<const Solid> make_solid(Mesh mesh);
+
+struct PlacedSolid {
+  std::shared_ptr<const Solid> solid;
+  glm::mat4 world_from_solid{1.0f};       ///< affine, invertible
+  std::optional<SolidMaterial> material;  ///< instead of the mesh's own
+};
+
+enum class TankStyle {
+  none,
+  glass,  ///< clear panes on four sides, seen through, with rims
+  tiled,  ///< walls and floor with tiles; a wall is seen from inside only, so that it does not hide the water
+};
+/// @throws Error invalid_argument
+TankStyle tank_style_of(std::string_view name);
+
+/// A box around the water, open at the top.
+struct Tank {
+  TankStyle style = TankStyle::none;
+  Bounds inside;                         ///< m, of the space for the water
+  vec3 up{0, 1, 0};                      ///< one of the axes, positive
+  float thickness = 0;                   ///< of the walls, m; 0: a hundredth of the longest edge
+  vec3 albedo{0.55f, 0.72f, 0.78f};      ///< of the tiles
+  vec3 joint_albedo{0.85f};              ///< of the joints between them
+  float tile = 0;                        ///< edge of a tile, m; 0: a twelfth of the longest edge
+  vec3 glass_tint{0.93f, 0.97f, 0.95f};  ///< what white light becomes through one pane, straight on
+};
+
+/// A lamp without extent.
+struct PointLight {
+  vec3 position{0.0f};   ///< m
+  vec3 intensity{1.0f};  ///< radiant intensity: irradiance times m^2 on a surface that faces it
+};
+
+/// What a ray meets first of all solids: meshes, tank, ground.
+struct SolidHit {
+  float distance = std::numeric_limits<float>::infinity();  ///< m along the ray; infinity: nothing
+  vec3 normal{0.0f};                                        ///< unit, interpolated, towards the ray's origin
+  vec3 face_normal{0.0f};                                   ///< unit, of the flat face, towards the ray's origin
+  vec3 albedo{0.0f};                                        ///< linear, textures and tiles averaged over the beam
+  float roughness = 1;
+  float ior = 1.5f;
+  float presence = 1;  ///< less than 1 where the ground fades into the horizon
+
+  bool found() const { return distance < std::numeric_limits<float>::infinity(); }
+};
+
+/// What of the solids is seen through a view. All images have the view's size, or N x 1 for N picture points.
+struct SceneBuffers {
+  Image<vec3> radiance;  ///< linear; the environment, without the sun's disc, where there is nothing
+  Image<float> depth;    ///< distance along the ray, m; +infinity where there is nothing
+  Image<vec3> normal;    ///< unit, world space, towards the eye; zero where there is nothing
+  Image<vec3> albedo;    ///< linear; zero where there is nothing
+};
+
+/// What is done to light on its way through the tank's panes: radiance = before * transmittance + added.
+struct GlassPane {
+  vec3 transmittance{1.0f};
+  vec3 added{0.0f};
+};
+
+/// What is seen behind and around the water. A cheap handle of what does not change: copies share it.
 class Scene {
  public:
   Scene(Environment environment, Ground ground);
-  void set_ground_light(std::shared_ptr<const GroundLight> light);
+  void set_water_light(std::shared_ptr<const WaterLight> light);
+  /// @throws Error invalid_argument: a transform that is not invertible
+  void set_solids(std::vector<PlacedSolid> solids);
+  void set_tank(const Tank& tank);
+  void set_lamps(std::vector<PointLight> lamps);
   const Environment& environment() const;
   const Ground& ground() const;
-  /// Radiance along a ray, from the ground or the sky, without the sun's disc. `footprint`: width of the ray's beam
-  /// per metre of its length, so that chequers far away average out instead of shimmering.
-  vec3 radiance(const Ray& ray, float footprint) const;
-  /// The same for any beam, the sky blurred by `roughness` as in Environment::radiance.
+  const Tank& tank() const;
+  const std::vector<PointLight>& lamps() const;
+  /// Box of meshes and tank, without the ground; empty if there are none.
+  Bounds solid_bounds() const;
+
+  /// What of the solids is seen through a view (perspective, orthographic, cube), lit with shadows.
+  SceneBuffers see(const View& view, std::span<const vec2> points = {}, StageTimes* times = nullptr) const;
+  /// The first solid along the ray, `from` m from its origin or farther, nothing beyond `limit`.
+  SolidHit hit(const Ray& ray, Beam beam = {}, float from = 0,
+               float limit = std::numeric_limits<float>::infinity()) const;
+  /// Distance to the first solid along the ray; infinity if there is none.
+  float distance(const Ray& ray, float from = 0) const;
+  /// Whether a solid stands between two points; their own surfaces do not count.
+  bool blocked(vec3 from, vec3 to) const;
+  /// Whether a solid stands between a point and the environment in this direction (unit).
+  bool shadowed(vec3 from, vec3 direction) const;
+
+  /// Radiance along a ray, from the nearest solid or the environment, without the sun's disc, without glass panes.
+  /// @param roughness  the environment is blurred by it, as in Environment::radiance
   vec3 radiance(const Ray& ray, Beam beam, float roughness = 0) const;
+  /// Narrow beam: `footprint` m of width per metre of its length.
+  vec3 radiance(const Ray& ray, float footprint) const;
+  /// Light that leaves a point on a solid towards the ray's origin.
+  vec3 lit(const SolidHit& hit, const Ray& ray, Beam beam) const;
+  /// Irradiance on a solid's point from sun, sky and lamps, with shadows and what the water brings.
+  vec3 irradiance(vec3 point, vec3 normal, vec3 face_normal) const;
+
+  /// The panes of a glass tank between the ray's origin and `distance`.
+  GlassPane glass(const Ray& ray, float distance) const;
+
   /// Distance to the ground along the ray; infinity if the ray misses it. Zero for a ray that starts below the
   /// ground and goes down.
   float ground_distance(const Ray& ray) const;
-  /// Radiance of the ground itself at a point on it, without fading; `width_u`, `width_v`: edges of the averaged
-  /// rectangle along the plane's axes, m.
-  vec3 ground_radiance(vec3 point, float width_u, float width_v) const;
 
  private:
-  Environment environment_;
-  Ground ground_;
-  std::shared_ptr<const GroundLight> light_;
-  vec3 u_axis_, v_axis_;              ///< along the squares' edges
-  vec3 sun_exitance_, sky_exitance_;  ///< radiance of a white ground in the sun alone and in the sky alone
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
 };
 
 }  // namespace meniscus

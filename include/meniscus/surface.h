@@ -1,6 +1,7 @@
 /// Water surfaces: whatever represents the water, it answers what of it is seen through a view.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "meniscus/base.h"
@@ -18,6 +19,12 @@ struct SurfaceBuffers {
   bool eye_in_water = false;  ///< rays start inside: depth is where they leave the water
   /// Where each pixel's ray may first and last meet water, m along the ray; what refine() starts from.
   Image<float> entry, exit;
+};
+
+/// Where a ray crosses a surface.
+struct Crossing {
+  float distance = std::numeric_limits<float>::infinity();  ///< m along the ray; infinity: nowhere
+  vec3 normal{0.0f};                                        ///< unit, out of the water; zero: nowhere
 };
 
 /// A water surface.
@@ -41,6 +48,17 @@ class Surface {
   /// Only the thickness of what see() returns: water along the ray, m.
   virtual Image<float> thickness(const View& view, std::span<const vec2> points = {},
                                  StageTimes* times = nullptr) const = 0;
+
+  /// Whether rays in any direction can be followed through the water, by crossings().
+  virtual bool can_march() const { return false; }
+
+  /// The first place, `from[i]` m from its origin or farther and no farther than `limit[i]`, where ray i crosses the
+  /// surface: into the water, or out of it where inside[i] != 0. A ray that is not where `inside` says (by rounding
+  /// near the surface) crosses at the first true change. Consecutive rays are cheapest when they lie close together.
+  /// All spans have the same length.
+  /// @throws Error unsupported: a surface that cannot march
+  virtual void crossings(std::span<const Ray> rays, std::span<const float> from, std::span<const float> limit,
+                         std::span<const std::uint8_t> inside, std::span<Crossing> found) const;
 
   /// A box that holds all of the surface; empty when there is no water.
   virtual Bounds bounds() const = 0;
@@ -89,6 +107,74 @@ std::unique_ptr<Surface> make_raycast_surface(const Particles& particles, const 
 /// around a sample, one ray after another on the calling thread. What the fast one is checked and timed against.
 std::unique_ptr<Surface> make_plain_raycast_surface(const Particles& particles, const RaycastOptions& options,
                                                     std::span<const vec3> colours = {}, StageTimes* times = nullptr);
+
+// --- Point-sampled surfaces [Iwasaki2008] --------------------------------------------------------------------
+
+/// Points of a regular grid: point (i, j, k) is low + (i, j, k) * step.
+struct DensityGrid {
+  vec3 low{0.0f};   ///< m
+  vec3 step{0.0f};  ///< m between neighbouring points along each axis, > 0
+  int nx = 0, ny = 0, nz = 0;
+  std::size_t size() const {
+    return static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) * static_cast<std::size_t>(nz);
+  }
+};
+
+/// Particles as the density is summed from: relative density rho(x) = spacing^3 sum_j m_j W(|x - p_j|, h), which is
+/// one inside a lattice of that spacing. `kernel`, `smoothing_length`, `spacing`, `keep_thin` of the options count.
+struct DensityOptions {
+  float spacing = 0;           ///< m, > 0
+  float smoothing_length = 0;  ///< m; 0: 2 spacings
+  Kernel kernel = Kernel::wyvill;
+  bool keep_thin = true;  ///< masses as in RaycastOptions
+};
+
+/// The density at every point of a grid, x fastest, then y, then z: metaball discs splatted slab by slab, four planes
+/// at a time, over particles clustered by z.                                             [Iwasaki2008] 4.1, 4.2
+/// @param on_slab  called for k = 0, 4, 8, ... in rising order with up to four planes of nx * ny values each, one after
+///                 another; the memory is used again for later slabs
+/// @param working_bytes  if not null: the largest memory that was held for slabs and clusters at once
+/// @throws Error   invalid_argument: sizes < 2, steps <= 0; limit_exceeded: more than 2^31 points in a plane
+void splat_density(const Particles& particles, const DensityOptions& options, const DensityGrid& grid,
+                   FunctionRef<void(int k, int planes, std::span<const float> values)> on_slab,
+                   StageTimes* times = nullptr, std::size_t* working_bytes = nullptr);
+/// The whole field at once.
+std::vector<float> splat_density(const Particles& particles, const DensityOptions& options, const DensityGrid& grid,
+                                 StageTimes* times = nullptr);
+/// The plain sum in double precision, one thread, one particle after another: what the fast one is checked against.
+std::vector<double> plain_density(const Particles& particles, const DensityOptions& options, const DensityGrid& grid);
+
+/// A disc on the surface.
+struct Surfel {
+  vec3 position;  ///< on the iso-surface, m
+  vec3 normal;    ///< unit, out of the water
+  float radius;   ///< m; neighbours' discs overlap, so that no gap remains
+};
+
+struct SurfelOptions {
+  float spacing = 0;           ///< m; required, > 0
+  float smoothing_length = 0;  ///< m; 0: 2 spacings
+  Kernel kernel = Kernel::wyvill;
+  float iso = 0.5f;         ///< as in RaycastOptions
+  float grid_step = 0;      ///< m between points of the grid; 0: half a spacing, coarser for far-flung water
+  float gap_threshold = 0;  ///< m between neighbours beyond which points are added; 0: 1.5 grid steps
+  float epsilon = 0;        ///< m; discs this close in depth are blended; 0: one spacing
+  bool keep_thin = true;
+  bool want_thickness = true;
+};
+
+/// Surfels on the iso-surface of the particles' density.                                 [Iwasaki2008] 4.3
+/// @throws Error invalid_argument, limit_exceeded
+std::vector<Surfel> extract_surfels(const Particles& particles, const SurfelOptions& options,
+                                    StageTimes* times = nullptr);
+
+/// The surface splatted from surfels: back faces culled, a depth pass with the offset epsilon, Gaussian-weighted
+/// normals and depths.                                                                  [Iwasaki2008] 5.1.1, 5.2
+/// @param colours  one linear colour a particle, or empty
+std::unique_ptr<Surface> make_surfel_surface(const Particles& particles, const SurfelOptions& options,
+                                             std::span<const vec3> colours = {}, StageTimes* times = nullptr);
+/// The same from surfels that are there already; it has no thickness and cannot be marched.
+std::unique_ptr<Surface> make_surfel_surface(std::vector<Surfel> surfels, float epsilon);
 
 // --- Particles as they are ---------------------------------------------------------------------------------
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "meniscus/base.h"
@@ -37,7 +39,25 @@ View oriented(vec3 eye, vec3 target, vec3 up_hint, int width, int height) {
 
 }  // namespace
 
+View View::face(int index) const {
+  const vec3 towards = index < 2 ? right : index < 4 ? up : forward;
+  View view;
+  view.width = view.height = height;
+  view.eye = eye;
+  view.half_height = 1.0f;
+  view.forward = index % 2 == 0 ? towards : -towards;
+  // Side faces keep the picture's up; the upper face has the back at its top, the lower one the front.
+  view.up = index == 2 ? -forward : index == 3 ? forward : up;
+  view.right = glm::cross(view.forward, view.up);
+  return view;
+}
+
 Ray View::ray(vec2 picture_point) const {
+  if (projection == Projection::cube) {
+    const float size = static_cast<float>(height);
+    const int index = std::clamp(static_cast<int>(picture_point.x / size), 0, 5);
+    return face(index).ray({picture_point.x - static_cast<float>(index) * size, picture_point.y});
+  }
   const vec2 p = on_plane(*this, picture_point);
   const vec3 offset = p.x * right + p.y * up;
   if (projection == Projection::orthographic) return {eye + offset, forward};
@@ -46,6 +66,15 @@ Ray View::ray(vec2 picture_point) const {
 
 vec3 View::project(vec3 point) const {
   const vec3 offset = point - eye;
+  if (projection == Projection::cube) {
+    // The face is that of the axis along which the point is farthest.
+    const vec3 along{glm::dot(offset, right), glm::dot(offset, up), glm::dot(offset, forward)};
+    const vec3 size = glm::abs(along);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int index = 2 * axis + (along[axis] < 0 ? 1 : 0);
+    const vec3 on_face = face(index).project(point);
+    return {on_face.x + static_cast<float>(index * height), on_face.y, on_face.z};
+  }
   const float z = glm::dot(offset, forward);
   const float on_unit = projection == Projection::perspective ? 1.0f / z : 1.0f;
   const float plane_to_pixels = 0.5f * static_cast<float>(height) / half_height;
@@ -55,7 +84,7 @@ vec3 View::project(vec3 point) const {
 
 float View::pixel_size(float depth) const {
   const float at_one = 2.0f * half_height / static_cast<float>(height);
-  return projection == Projection::perspective ? at_one * depth : at_one;
+  return projection == Projection::orthographic ? at_one : at_one * depth;
 }
 
 View View::resized(int new_width, int new_height) const {
@@ -71,6 +100,18 @@ View perspective_view(vec3 eye, vec3 target, vec3 up_hint, float vertical_fov, i
                 fmt::format("a field of view of {} radians is not in (0, pi)", vertical_fov));
   View view = oriented(eye, target, up_hint, width, height);
   view.half_height = std::tan(0.5f * vertical_fov);
+  return view;
+}
+
+View cube_view(vec3 eye, int size) {
+  if (size < 1 || size > (1 << 16))
+    throw Error(ErrorCode::invalid_argument, fmt::format("a cube of faces of {} pixels cannot be drawn", size));
+  View view;
+  view.projection = Projection::cube;
+  view.width = 6 * size;
+  view.height = size;
+  view.eye = eye;
+  view.half_height = 1.0f;
   return view;
 }
 

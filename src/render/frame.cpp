@@ -15,8 +15,8 @@ namespace {
 Scene lit_scene(const Surface& surface, const FrameSettings& settings, StageTimes* times) {
   Scene scene(settings.environment, settings.ground);
   if (settings.ground.visible && settings.shadow && !surface.bounds().empty())
-    scene.set_ground_light(
-        ground_light(surface, settings.environment, settings.ground, settings.material, times, settings.water));
+    scene.set_water_light(
+        soft_shadow(surface, settings.environment, settings.ground, settings.material, times, settings.water));
   return scene;
 }
 
@@ -88,7 +88,7 @@ FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
 
   // Light.
   const Scene scene = lit_scene(*surface, settings, times);
-  frame.radiance = shade(view, {}, frame.buffers, scene, settings.material, times);
+  frame.radiance = shade(view, {}, frame.buffers, scene, settings.material, {}, times);
 
   // Outlines.
   if (settings.antialias == Antialias::edges) {

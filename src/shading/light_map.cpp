@@ -55,18 +55,20 @@ LightMap::LightMap(const View& view, Image<Fractions> texels) : texels_(std::mov
                  0.5f * static_cast<float>(view.height) - 0.5f - glm::dot(view.eye, y_axis_)};
 }
 
-GroundLight::Fractions LightMap::at(vec3 point) const {
+WaterLight::Light LightMap::at(vec3 point, vec3) const {
   const float x = glm::dot(x_axis_, point) + origin_.x, y = glm::dot(y_axis_, point) + origin_.y;
   if (!(x >= 0 && y >= 0 && x < static_cast<float>(texels_.width() - 1) &&
         y < static_cast<float>(texels_.height() - 1)))
-    return {vec3{1.0f}, vec3{1.0f}};
+    return {};
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const Fractions* above = texels_.row(j) + i;
   const Fractions* below = texels_.row(j + 1) + i;
   const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
   const float w00 = (1.0f - s) * (1.0f - t), w10 = s * (1.0f - t), w01 = (1.0f - s) * t, w11 = s * t;
-  return {w00 * above[0].sun + w10 * above[1].sun + w01 * below[0].sun + w11 * below[1].sun,
-          w00 * above[0].sky + w10 * above[1].sky + w01 * below[0].sky + w11 * below[1].sky};
+  Light light;
+  light.sun = w00 * above[0].sun + w10 * above[1].sun + w01 * below[0].sun + w11 * below[1].sun;
+  light.sky = w00 * above[0].sky + w10 * above[1].sky + w01 * below[0].sky + w11 * below[1].sky;
+  return light;
 }
 
 }  // namespace meniscus

@@ -6,13 +6,15 @@
 namespace meniscus {
 
 /// Fractions of sun and sky light by position across the sun's rays; one outside.
-class LightMap : public GroundLight {
+class LightMap : public WaterLight {
  public:
+  struct Fractions {
+    vec3 sun;
+    vec3 sky;
+  };
   /// @param view  orthographic, along the sun's rays; of the texels' size
   LightMap(const View& view, Image<Fractions> texels);
-  vec3 sun(vec3 point) const override { return at(point).sun; }
-  vec3 sky(vec3 point) const override { return at(point).sky; }
-  Fractions at(vec3 point) const override;
+  Light at(vec3 point, vec3 normal) const override;
 
  private:
   /// Position in texels: x = x_axis_ . point + origin_.x, likewise y.

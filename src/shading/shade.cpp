@@ -50,7 +50,8 @@ vec3 background(const Ray& ray, Beam beam, const Scene& scene) {
 }  // namespace
 
 Image<vec3> shade(const View& view, std::span<const vec2> points, const SurfaceBuffers& water, const Scene& scene,
-                  const Material& material, StageTimes* times) {
+                  const Material& material, const OpticsInputs& optics, StageTimes* times) {
+  static_cast<void>(optics);
   const StageTimer timer(times, "shade");
   require_material(material);
   const int width = points.empty() ? view.width : static_cast<int>(points.size());

@@ -171,5 +171,36 @@ TEST(OrthographicView, PictureIsAsHighAsAskedFor) {
   EXPECT_FLOAT_EQ(view.pixel_size(100.0f), 0.06f);
 }
 
+TEST(CubeView, ProjectsARayBackToItsPoint) {
+  const View view = cube_view({1, 2, 3}, 16);
+  EXPECT_EQ(view.width, 96);
+  for (int y = 0; y < view.height; y += 3)
+    for (int x = 0; x < view.width; ++x) {
+      const vec2 point{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+      const Ray ray = view.ray(point);
+      EXPECT_NEAR(glm::length(ray.direction), 1.0f, 1e-6f);
+      const vec3 back = view.project(ray.origin + 2.5f * ray.direction);
+      EXPECT_NEAR(back.x, point.x, 1e-3f);
+      EXPECT_NEAR(back.y, point.y, 1e-3f);
+      EXPECT_GT(back.z, 0.0f);
+    }
+}
+
+TEST(CubeView, ShowsEachDirectionInItsOwnFace) {
+  const View view = cube_view(vec3{0}, 8);
+  const vec3 towards[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 1}};
+  for (int k = 0; k < 6; ++k) {
+    expect_near(view.ray({8.0f * static_cast<float>(k) + 4.0f, 4.0f}).direction, towards[k], 1e-6f);
+    EXPECT_FLOAT_EQ(view.project(3.0f * towards[k]).z, 3.0f);
+  }
+}
+
+TEST(CubeView, FacesMeetWithoutATurn) {
+  // The right edge of the front face and the left edge of the right face are one line, the same way up.
+  const View view = cube_view(vec3{0}, 8);
+  for (const float y : {1.0f, 4.0f, 7.0f})
+    expect_near(view.ray({39.9999f, y}).direction, view.ray({0.0001f, y}).direction, 1e-3f);
+}
+
 }  // namespace
 }  // namespace meniscus

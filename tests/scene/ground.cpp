@@ -51,9 +51,13 @@ const Environment& sky() {
   return environment;
 }
 
-class HalfLight : public GroundLight {
-  vec3 sun(vec3) const override { return vec3{0.0f}; }
-  vec3 sky(vec3) const override { return vec3{0.5f}; }
+class HalfLight : public WaterLight {
+  Light at(vec3, vec3) const override {
+    Light light;
+    light.sun = vec3{0.0f};
+    light.sky = vec3{0.5f};
+    return light;
+  }
 };
 
 TEST(Ground, IsAsFarAsItsPlane) {
@@ -80,7 +84,7 @@ TEST(Ground, IsADiffuseMirrorOfSunAndSky) {
 
 TEST(Ground, TakesTheLightThatReachesIt) {
   Scene scene(sky(), Ground{});
-  scene.set_ground_light(std::make_shared<HalfLight>());
+  scene.set_water_light(std::make_shared<HalfLight>());
   const vec3 seen = scene.radiance({{0, 1, 0}, {0, -1, 0}}, 0.0f);
   EXPECT_NEAR(seen.y, 0.5f * 0.5f * sky().irradiance({0, 1, 0}).y / std::numbers::pi_v<float>, 1e-5f);
 }

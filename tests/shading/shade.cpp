@@ -165,7 +165,7 @@ TEST(ShadeBuffers, MustHaveThePicturesSize) {
 TEST(ShadeBuffers, AddARowToTheTimes) {
   const View view = camera(8, 8);
   StageTimes times;
-  shade(view, {}, even(8, 8, 4.0f, {0, 1, 0}, 1.0f), chequered(), Material{}, &times);
+  shade(view, {}, even(8, 8, 4.0f, {0, 1, 0}, 1.0f), chequered(), Material{}, {}, &times);
   ASSERT_EQ(times.rows().size(), 1u);
   EXPECT_EQ(times.rows()[0].first, "shade");
 }

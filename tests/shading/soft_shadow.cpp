@@ -55,56 +55,56 @@ Environment under_sun(vec3 direction) {
 
 const vec3 kSun{0.02f, 1.0f, 0.01f};
 
-TEST(GroundLight, IsWholeWithoutWaterAndFarFromIt) {
+TEST(SoftShadow, IsWholeWithoutWaterAndFarFromIt) {
   const Environment environment = under_sun(kSun);
   const Material water = material_preset("water", 1.0f);
-  const auto none = ground_light(Body(vec3{0.0f}, false), environment, Ground{}, water);
-  EXPECT_EQ(none->sun({0, 0, 0}), vec3{1.0f});
-  EXPECT_EQ(none->sky({0, 0, 0}), vec3{1.0f});
-  const auto some = ground_light(Body(vec3{1.0f}, false), environment, Ground{}, water);
-  EXPECT_EQ(some->sun({30, 0, 0}), vec3{1.0f});
-  EXPECT_EQ(some->sky({0, 0, -30}), vec3{1.0f});
+  const auto none = soft_shadow(Body(vec3{0.0f}, false), environment, Ground{}, water);
+  EXPECT_EQ(none->at({0, 0, 0}, vec3{0, 1, 0}).sun, vec3{1.0f});
+  EXPECT_EQ(none->at({0, 0, 0}, vec3{0, 1, 0}).sky, vec3{1.0f});
+  const auto some = soft_shadow(Body(vec3{1.0f}, false), environment, Ground{}, water);
+  EXPECT_EQ(some->at({30, 0, 0}, vec3{0, 1, 0}).sun, vec3{1.0f});
+  EXPECT_EQ(some->at({0, 0, -30}, vec3{0, 1, 0}).sky, vec3{1.0f});
 }
 
-TEST(GroundLight, UnderASlabIsFresnelTimesBeer) {
+TEST(SoftShadow, UnderASlabIsFresnelTimesBeer) {
   Material material = tests::clear();
   material.extinction = {0.2f, 0.5f, 1.5f};
-  const auto light = ground_light(Body({2, 0.5f, 2}, false), under_sun({0, 1, 0}), Ground{}, material);
+  const auto light = soft_shadow(Body({2, 0.5f, 2}, false), under_sun({0, 1, 0}), Ground{}, material);
   const double r = tests::reflectance(0, 1.333);
   for (int k = 0; k < 3; ++k)
-    EXPECT_NEAR(light->sun({0.1f, 0, 0.2f})[k], (1 - 2 * r) * std::exp(-static_cast<double>(material.extinction[k])),
-                2e-3);
+    EXPECT_NEAR(light->at({0.1f, 0, 0.2f}, vec3{0, 1, 0}).sun[k],
+                (1 - 2 * r) * std::exp(-static_cast<double>(material.extinction[k])), 2e-3);
 }
 
-TEST(GroundLight, UnderAnOpaqueBodyIsDark) {
-  const auto light = ground_light(Body(vec3{1.0f}, false), under_sun(kSun), Ground{}, material_preset("clay", 1.0f));
-  EXPECT_LT(light->sun({0, 0, 0}).x, 0.01f);
-  EXPECT_LT(light->sky({0, 0, 0}).x, 0.5f);
-  EXPECT_GT(light->sky({0, 0, 0}).x, 0.05f);
+TEST(SoftShadow, UnderAnOpaqueBodyIsDark) {
+  const auto light = soft_shadow(Body(vec3{1.0f}, false), under_sun(kSun), Ground{}, material_preset("clay", 1.0f));
+  EXPECT_LT(light->at({0, 0, 0}, vec3{0, 1, 0}).sun.x, 0.01f);
+  EXPECT_LT(light->at({0, 0, 0}, vec3{0, 1, 0}).sky.x, 0.5f);
+  EXPECT_GT(light->at({0, 0, 0}, vec3{0, 1, 0}).sky.x, 0.05f);
 }
 
-TEST(GroundLight, FallsWhereTheSunThrowsIt) {
+TEST(SoftShadow, FallsWhereTheSunThrowsIt) {
   // A slab 2 m high under a sun at 45 degrees: its shadow reaches 2 m away from the sun and not towards it.
   const auto light =
-      ground_light(Body({0.5f, 1.0f, 0.5f}, false), under_sun({1, 1, 0}), Ground{}, material_preset("clay", 1.0f));
-  EXPECT_LT(light->sun({-1.8f, 0, 0}).x, 0.1f);
-  EXPECT_GT(light->sun({1.0f, 0, 0}).x, 0.95f);
+      soft_shadow(Body({0.5f, 1.0f, 0.5f}, false), under_sun({1, 1, 0}), Ground{}, material_preset("clay", 1.0f));
+  EXPECT_LT(light->at({-1.8f, 0, 0}, vec3{0, 1, 0}).sun.x, 0.1f);
+  EXPECT_GT(light->at({1.0f, 0, 0}, vec3{0, 1, 0}).sun.x, 0.95f);
 }
 
-TEST(GroundLight, IsGatheredUnderABallAndMissingAtItsRim) {
-  const auto light = ground_light(Body(vec3{1.0f}, true), under_sun({0, 1, 0}), Ground{}, tests::clear());
-  EXPECT_GT(light->sun({0, 0, 0}).x, 1.1f);
-  EXPECT_LT(light->sun({0.93f, 0, 0}).x, 0.6f);
+TEST(SoftShadow, IsGatheredUnderABallAndMissingAtItsRim) {
+  const auto light = soft_shadow(Body(vec3{1.0f}, true), under_sun({0, 1, 0}), Ground{}, tests::clear());
+  EXPECT_GT(light->at({0, 0, 0}, vec3{0, 1, 0}).sun.x, 1.1f);
+  EXPECT_LT(light->at({0.93f, 0, 0}, vec3{0, 1, 0}).sun.x, 0.6f);
 }
 
-TEST(GroundLight, IsNeitherMadeNorLostByBending) {
+TEST(SoftShadow, IsNeitherMadeNorLostByBending) {
   // Under waves light is gathered and thinned out; its mean over a period is that of level water.
-  const auto light = ground_light(Body({2, 0.5f, 2}, false, 0.05f), under_sun({0, 1, 0}), Ground{}, tests::clear());
+  const auto light = soft_shadow(Body({2, 0.5f, 2}, false, 0.05f), under_sun({0, 1, 0}), Ground{}, tests::clear());
   double sum = 0, low = 9, high = 0;
   constexpr int kSteps = 400;
   for (int i = 0; i < kSteps; ++i) {
     const float x = Body::kPeriod * (static_cast<float>(i) / kSteps - 0.5f);
-    const double value = static_cast<double>(light->sun({x, 0, 0.1f}).x);
+    const double value = static_cast<double>(light->at({x, 0, 0.1f}, vec3{0, 1, 0}).sun.x);
     sum += value;
     low = std::min(low, value);
     high = std::max(high, value);
@@ -114,36 +114,36 @@ TEST(GroundLight, IsNeitherMadeNorLostByBending) {
   EXPECT_LT(low, 0.9);
 }
 
-TEST(GroundLight, HasNoSteps) {
-  const auto light = ground_light(Body({0.7f, 0.5f, 0.4f}, false), under_sun({0.5f, 0.7f, 0.3f}), Ground{},
-                                  material_preset("water", 1.0f));
-  vec3 last = light->sun({-3, 0, 0.1f});
+TEST(SoftShadow, HasNoSteps) {
+  const auto light = soft_shadow(Body({0.7f, 0.5f, 0.4f}, false), under_sun({0.5f, 0.7f, 0.3f}), Ground{},
+                                 material_preset("water", 1.0f));
+  vec3 last = light->at({-3, 0, 0.1f}, vec3{0, 1, 0}).sun;
   for (float x = -3; x < 3; x += 0.002f) {
-    const vec3 now = light->sun({x, 0, 0.1f});
+    const vec3 now = light->at({x, 0, 0.1f}, vec3{0, 1, 0}).sun;
     for (int k = 0; k < 3; ++k) ASSERT_TRUE(now[k] >= 0 && now[k] < 3.0f);
     EXPECT_LT(glm::length(now - last), 0.15f) << x;
     last = now;
   }
 }
 
-TEST(GroundLight, KnowsNoShadowOfASunBelowTheHorizon) {
+TEST(SoftShadow, KnowsNoShadowOfASunBelowTheHorizon) {
   const auto light =
-      ground_light(Body(vec3{1.0f}, false), under_sun({1, -0.2f, 0}), Ground{}, material_preset("clay", 1.0f));
-  EXPECT_EQ(light->sun({0, 0, 0}), vec3{1.0f});
-  EXPECT_LT(light->sky({0, 0, 0}).x, 0.7f);
+      soft_shadow(Body(vec3{1.0f}, false), under_sun({1, -0.2f, 0}), Ground{}, material_preset("clay", 1.0f));
+  EXPECT_EQ(light->at({0, 0, 0}, vec3{0, 1, 0}).sun, vec3{1.0f});
+  EXPECT_LT(light->at({0, 0, 0}, vec3{0, 1, 0}).sky.x, 0.7f);
 }
 
-TEST(GroundLight, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST(SoftShadow, GivesTheSameBitsForAnyNumberOfThreads) {
   const Environment environment = under_sun({0.3f, 0.8f, 0.1f});
-  std::vector<std::shared_ptr<const GroundLight>> lights;
+  std::vector<std::shared_ptr<const WaterLight>> lights;
   for (const int threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
     lights.push_back(
-        ground_light(Body({0.7f, 0.5f, 0.4f}, true), environment, Ground{}, material_preset("water", 1.0f)));
+        soft_shadow(Body({0.7f, 0.5f, 0.4f}, true), environment, Ground{}, material_preset("water", 1.0f)));
   }
   for (float x = -1; x < 1; x += 0.013f) {
-    EXPECT_EQ(lights[0]->sun({x, 0, 0.1f}), lights[1]->sun({x, 0, 0.1f}));
-    EXPECT_EQ(lights[0]->sky({x, 0, 0.1f}), lights[2]->sky({x, 0, 0.1f}));
+    EXPECT_EQ(lights[0]->at({x, 0, 0.1f}, vec3{0, 1, 0}).sun, lights[1]->at({x, 0, 0.1f}, vec3{0, 1, 0}).sun);
+    EXPECT_EQ(lights[0]->at({x, 0, 0.1f}, vec3{0, 1, 0}).sky, lights[2]->at({x, 0, 0.1f}, vec3{0, 1, 0}).sky);
   }
 }
 

@@ -77,17 +77,16 @@ Image<vec3> gathered(const Image<vec3>& arriving, const Image<float>& smooth, fl
 }
 
 /// No water: all light everywhere.
-class Unshadowed : public GroundLight {
+class Unshadowed : public WaterLight {
  public:
-  vec3 sun(vec3) const override { return vec3{1.0f}; }
-  vec3 sky(vec3) const override { return vec3{1.0f}; }
+  Light at(vec3, vec3) const override { return {}; }
 };
 
 }  // namespace
 
-std::shared_ptr<const GroundLight> ground_light(const Surface& surface, const Environment& environment,
-                                                const Ground& ground, const Material& material, StageTimes* times,
-                                                const Bounds& region) {
+std::shared_ptr<const WaterLight> soft_shadow(const Surface& surface, const Environment& environment,
+                                              const Ground& ground, const Material& material, StageTimes* times,
+                                              const Bounds& region) {
   const StageTimer timer(times, "shadow");
   Bounds bounds = surface.bounds();
   if (!region.empty() && !bounds.empty()) {
@@ -133,7 +132,7 @@ std::shared_ptr<const GroundLight> ground_light(const Surface& surface, const En
   blur(skylight, kSkyBlur * texels);
 
   // Out to the edge everything becomes one.
-  Image<GroundLight::Fractions> map(view.width, view.height);
+  Image<LightMap::Fractions> map(view.width, view.height);
   const float border = 0.25f * kMargin * texels;
   const float sky_taken = material.transparent ? 0.30f : kMostSkyTaken;
   for (int y = 0; y < map.height(); ++y)
