@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "commands.h"
@@ -58,18 +59,41 @@ void InputOptions::add_to(CLI::App& command) {
 
 FrameSequence InputOptions::find(bool quiet) const {
   for (const std::string& path : what)
-    if (is_scene_file(path))
-      throw Error(ErrorCode::unsupported,
-                  {"scene files are not read in this version", "frames of particles", {}, path, {}, {}, {}});
+    if (is_scene_file(path)) throw UsageError(path + ": frames of particles were expected here, not a scene file");
   FrameSequence found = find_frames(what);
   if (!quiet)
     for (const std::string& note : found.notes) std::cerr << "meniscus: " << note << '\n';
+  return select(std::move(found));
+}
+
+FrameSequence InputOptions::select(FrameSequence found) const {
+  if (first_number || last_number)
+    std::erase_if(found.frames, [&](const FramePath& frame) {
+      return frame.number && (*frame.number < first_number.value_or(*frame.number) ||
+                              *frame.number > last_number.value_or(*frame.number));
+    });
   const auto [begin, end] = bounds_of(selection, found.frames.size());
   std::vector<FramePath> picked;
-  for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(selection.step)) picked.push_back(found.frames[i]);
+  const auto step = static_cast<std::size_t>(selection.step) * static_cast<std::size_t>(every.value_or(1));
+  for (std::size_t i = begin; i < end; i += step) picked.push_back(found.frames[i]);
   if (picked.empty()) throw UsageError(fmt::format("--frames picks none of the {} frames", found.frames.size()));
   found.frames = std::move(picked);
   return found;
+}
+
+std::optional<std::string> InputOptions::scene_file() const {
+  if (std::none_of(what.begin(), what.end(), is_scene_file)) return std::nullopt;
+  if (what.size() > 1) throw UsageError("a scene file stands alone: it says itself which frames are meant");
+  return what.front();
+}
+
+void InputOptions::take(const SceneFile& scene) {
+  what = scene.frames;
+  first_number = scene.first;
+  last_number = scene.last;
+  every = scene.every;
+  if (!spacing) spacing = scene.spacing;
+  if (!up) up = scene.up;
 }
 
 SurveyOptions InputOptions::survey_options() const {

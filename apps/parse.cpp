@@ -51,6 +51,18 @@ PictureSize parse_size(std::string_view option, std::string_view text) {
   return size;
 }
 
+PointLight parse_lamp(std::string_view option, std::string_view text) {
+  const auto parts = split(text, ':');
+  if (parts.size() != 2) refuse(option, text, "a place and an intensity, X,Y,Z:INTENSITY or X,Y,Z:R,G,B,");
+  PointLight lamp;
+  lamp.position = parse_vec3(option, parts[0]);
+  float grey = 0;
+  lamp.intensity = read(parts[1], grey) ? glm::vec3{grey} : parse_vec3(option, parts[1]);
+  if (!(lamp.intensity.x >= 0 && lamp.intensity.y >= 0 && lamp.intensity.z >= 0))
+    refuse(option, text, "an intensity from 0 up");
+  return lamp;
+}
+
 glm::vec3 parse_vec3(std::string_view option, std::string_view text) {
   const auto parts = split(text, ',');
   glm::vec3 v{0};

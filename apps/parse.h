@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "meniscus/scene.h"
+
 namespace meniscus::apps {
 
 struct PictureSize {
@@ -21,6 +23,9 @@ glm::vec3 parse_vec3(std::string_view option, std::string_view text);
 glm::vec2 parse_vec2(std::string_view option, std::string_view text);
 /// "0:2.5", rising
 std::pair<float, float> parse_range(std::string_view option, std::string_view text);
+
+/// "x,y,z:intensity" or "x,y,z:r,g,b"
+PointLight parse_lamp(std::string_view option, std::string_view text);
 
 /// "A:B:STEP" as Python slices (each part may be missing, negative counts from the end), or "N" alone.
 struct FrameSelection {

@@ -19,6 +19,9 @@ struct RenderArguments {
   PictureArguments picture;
   SequenceOptions sequence;
   std::string report_path;
+  std::string output;  ///< empty: what the scene file says
+  std::optional<double> frames_per_second;
+  std::optional<int> quality_crf;
   bool quiet = false;
   int threads = 0;
 };
@@ -43,17 +46,37 @@ std::size_t turntable_of(const RenderArguments& arguments, const PictureOptions&
   return moves && arguments.input.selection.first_n ? static_cast<std::size_t>(*arguments.input.selection.first_n) : 0;
 }
 
+/// What a scene file says, as far as the arguments do not say otherwise.
+SceneFile scene_of(RenderArguments& arguments) {
+  SceneFile scene;
+  const std::optional<std::string> path = arguments.input.scene_file();
+  if (path) scene = read_scene_file(*path);
+  SequenceOptions& sequence = arguments.sequence;
+  sequence.output = arguments.output.empty() ? scene.output : arguments.output;
+  if (sequence.output.empty()) throw UsageError("-o FILE is needed: where the picture goes");
+  if (arguments.frames_per_second) scene.video.frames_per_second = *arguments.frames_per_second;
+  if (arguments.quality_crf) scene.video.quality_crf = *arguments.quality_crf;
+  sequence.video = scene.video;
+  if (path) arguments.input.take(scene);
+  return scene;
+}
+
 void render(RenderArguments& arguments) {
   // All that can be wrong with the arguments shows before the work.
+  const SceneFile scene = scene_of(arguments);
   static_cast<void>(OutputTarget(arguments.sequence.output));
-  PictureOptions picture = arguments.picture.options(arguments.input);
+  PictureOptions picture = arguments.picture.options(arguments.input, scene.picture);
   if (!picture.material.empty()) static_cast<void>(material_preset(picture.material, 1.0f));
   if (!picture.environment_hdr.empty()) {
     EnvironmentOptions environment;
     environment.hdr_path = picture.environment_hdr;
     static_cast<void>(Environment(environment));
   }
-  const FrameSequence sequence = arguments.input.find(arguments.quiet);
+  if (OutputTarget(arguments.sequence.output).format() == PictureFormat::ply &&
+      picture.method != SurfaceMethod::surfels)
+    throw UsageError("a .ply file holds surfels: add --surface surfels, or write a .png, .exr or .mp4");
+  const FrameSequence sequence =
+      scene.waves ? arguments.input.select(waves_sequence(*scene.waves)) : arguments.input.find(arguments.quiet);
   arguments.sequence.strict = arguments.input.strict;
   arguments.sequence.turntable = turntable_of(arguments, picture);
   check_output(sequence, arguments.sequence);
@@ -87,16 +110,17 @@ void add_output(CLI::App& command, RenderArguments& arguments) {
   const char* group = "Output";
   SequenceOptions& sequence = arguments.sequence;
   command
-      .add_option("-o,--output", sequence.output,
-                  "A .png, .exr or .mp4 file, or a pattern with {} or {:04} for the frame number")
-      ->required()
+      .add_option(
+          "-o,--output", arguments.output,
+          "A .png, .exr or .mp4 file, or a pattern with {} or {:04} for the frame number; with --surface surfels "
+          "also a .ply of the surfels (default: what the scene file says)")
       ->type_name("FILE")
       ->group(group);
-  command.add_option("--fps", sequence.video.frames_per_second, "Frames a second of a film, 0.1 to 1000 (default: 25)")
+  command.add_option("--fps", arguments.frames_per_second, "Frames a second of a film, 0.1 to 1000 (default: 25)")
       ->type_name("N")
       ->check(CLI::Range(0.1, 1000.0).description(""))
       ->group(group);
-  command.add_option("--quality", sequence.video.quality_crf, "Of a film: 0 lossless to 51 worst (default: 18)")
+  command.add_option("--quality", arguments.quality_crf, "Of a film: 0 lossless to 51 worst (default: 18)")
       ->type_name("CRF")
       ->check(CLI::Range(0, 51).description(""))
       ->group(group);
@@ -137,7 +161,9 @@ void add_render(CLI::App& program) {
       "  meniscus render frames/ -o film.mp4\n"
       "  meniscus render 'sim_*.vtk' -o pictures/{:04}.png --size 1920x1080 --resume\n"
       "  meniscus render frame_100.bgeo -o turn.mp4 --orbit 360 --frames 120\n"
-      "  meniscus render frames/ -o film.mp4 --color-by velocity --range 0:3 --legend");
+      "  meniscus render frames/ -o film.mp4 --color-by velocity --range 0:3 --legend\n"
+      "  meniscus render frames/ -o still.png --tank glass --mesh rock.obj --refraction ray_traced\n"
+      "  meniscus render examples/pool.json -o pool.png");
   command->callback([arguments] { render(*arguments); });
 }
 

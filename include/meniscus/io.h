@@ -1,6 +1,8 @@
 /// Particle frames on disk: one reader a format, and sequences of frames.
 #pragma once
 
+#include <functional>
+
 #include "meniscus/base.h"
 
 namespace meniscus {
@@ -20,7 +22,13 @@ struct FramePath {
 struct FrameSequence {
   std::vector<FramePath> frames;
   std::vector<std::string> notes;  ///< missing numbers, files left out, and why
+  /// Where the particles of a frame come from when they are not in a file: made up, or out of a simulation.
+  std::function<Particles(const FramePath&)> source;
 };
+
+/// The particles of one frame of a sequence.
+/// @throws Error  what read_particles() or the sequence's source throws
+Particles read_frame(const FrameSequence& sequence, const FramePath& frame);
 
 /// Finds the frames that the arguments name: files, directories (every particle file in them), globs
 /// (`*`, `?`, `[...]`), and patterns with `{}` for the frame number. Natural order within an argument.

@@ -73,6 +73,9 @@ struct FrameSettings {
   int drop_isolated = 0;  ///< leave out particles with fewer neighbours than this; 0: none
 };
 
+/// The surfels that SurfaceMethod::surfels draws.
+std::vector<Surfel> surfels_of(const Particles& particles, const FrameSettings& settings, StageTimes* times = nullptr);
+
 /// One drawn frame, with everything that led to it.
 struct FramePicture {
   Image<Rgb8> picture;                     ///< developed, with the legend
@@ -277,9 +280,14 @@ View view_of(const Survey& survey, const PictureOptions& options, std::size_t in
 
 // --- Sequences ---------------------------------------------------------------------------------------------
 
-enum class PictureFormat { png, exr, mp4 };
+enum class PictureFormat {
+  png,
+  exr,
+  mp4,
+  ply,  ///< no picture: the surfels of SurfaceMethod::surfels
+};
 
-/// Where pictures go: "still.png", "frames/{}.png", "frames/{:04}.exr", "film.mp4".
+/// Where pictures go: "still.png", "frames/{}.png", "frames/{:04}.exr", "film.mp4", "surfels_{}.ply".
 class OutputTarget {
  public:
   /// @throws Error invalid_argument: no path, an unknown extension, a pattern that cannot be understood
@@ -377,6 +385,8 @@ SceneFile read_scene_file(const std::string& path);
 /// obey the dispersion of gravity waves over the tank's depth and are reflected by its walls.
 /// @param time  s
 Particles synthetic_waves(const WavesOptions& options, double time);
+/// The waves as a sequence that is made up frame by frame.
+FrameSequence waves_sequence(const WavesOptions& options);
 
 // --- A scene for measurements ------------------------------------------------------------------------------
 

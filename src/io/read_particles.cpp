@@ -104,6 +104,10 @@ Particles read_any(const std::string& path) {
 
 }  // namespace
 
+Particles read_frame(const FrameSequence& sequence, const FramePath& frame) {
+  return sequence.source ? sequence.source(frame) : read_particles(frame.path);
+}
+
 Particles read_particles(const std::string& path) {
   try {
     Particles particles = read_any(path);

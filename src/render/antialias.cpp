@@ -16,13 +16,15 @@ constexpr float kFoldCosine = 0.819f;         ///< of 35 degrees
 /// Whether two neighbouring pixels show different things.
 class Differ {
  public:
-  Differ(const View& view, const SurfaceBuffers& buffers, const Image<std::uint8_t>& visible, float spacing)
-      : view_(view), buffers_(buffers), visible_(visible), spacing_(spacing) {}
+  /// @param solids  what is seen without the water; null: nothing with edges
+  Differ(const View& view, const SurfaceBuffers& buffers, const Image<std::uint8_t>& visible,
+         const SceneBuffers* solids, float spacing)
+      : view_(view), buffers_(buffers), visible_(visible), solids_(solids), spacing_(spacing) {}
 
   bool operator()(std::size_t a, std::size_t b, vec3 direction) const {
     const bool water_a = visible_[a] != 0, water_b = visible_[b] != 0;
     if (water_a != water_b) return true;
-    if (!water_a) return false;
+    if (!water_a) return solids_ && solids_differ(a, b, direction);
     const float depth_a = buffers_.depth[a], depth_b = buffers_.depth[b];
     float slope = 0;  // change of depth over the width of a pixel on the flatter-seen of both surfaces
     if (!buffers_.normal.empty()) {
@@ -37,16 +39,30 @@ class Differ {
   }
 
  private:
+  /// Edges and outlines of solids, and where they meet.
+  bool solids_differ(std::size_t a, std::size_t b, vec3 direction) const {
+    const float depth_a = solids_->depth[a], depth_b = solids_->depth[b];
+    const bool far_a = depth_a == std::numeric_limits<float>::infinity();
+    const bool far_b = depth_b == std::numeric_limits<float>::infinity();
+    if (far_a || far_b) return far_a != far_b;
+    const vec3 normal = solids_->normal[a];
+    if (glm::dot(normal, solids_->normal[b]) < kFoldCosine) return true;
+    // Whether b lies on the plane through a, as far as a pixel can tell.
+    const float cosine = std::max(0.02f, std::abs(glm::dot(normal, direction)));
+    return std::abs(depth_a - depth_b) > 4 * view_.pixel_size(std::min(depth_a, depth_b)) / cosine;
+  }
+
   const View& view_;
   const SurfaceBuffers& buffers_;
   const Image<std::uint8_t>& visible_;  ///< 1 where water is seen
+  const SceneBuffers* solids_;
   float spacing_;
 };
 
 }  // namespace
 
 std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, const Scene& scene,
-                                             float spacing) {
+                                             float spacing, const SceneBuffers* solids) {
   const Image<float>& coverage = buffers.coverage;
   const std::size_t width = static_cast<std::size_t>(coverage.width());
   const std::size_t height = static_cast<std::size_t>(coverage.height());
@@ -56,10 +72,11 @@ std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuff
     for (std::size_t i = begin * width; i < end * width; ++i) {
       if (!(coverage[i] > 0)) continue;
       const Ray ray = view.ray({static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f});
-      visible[i] = buffers.eye_in_water || scene.ground_distance(ray) >= buffers.depth[i] ? 1 : 0;
+      visible[i] =
+          buffers.eye_in_water || (solids ? solids->depth[i] : scene.distance(ray)) >= buffers.depth[i] ? 1 : 0;
     }
   });
-  const Differ differ(view, buffers, visible, spacing);
+  const Differ differ(view, buffers, visible, solids, spacing);
   // A row looks at its neighbours on all sides and marks its own pixels only.
   parallel_for(height, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
@@ -77,7 +94,8 @@ std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuff
 }
 
 void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,
-                   std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers, Image<vec3>& radiance) {
+                   const OpticsInputs& optics, std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers,
+                   Image<vec3>& radiance) {
   // What refine() looks at must stay as see() returned it, so the means are kept aside until the end.
   std::vector<float> coverage(pixels.size()), thickness(pixels.size());
   const std::size_t width = static_cast<std::size_t>(view.width);
@@ -90,7 +108,7 @@ void refine_pixels(const Surface& surface, const View& view, const Scene& scene,
         points.emplace_back(static_cast<float>(pixel % width) + (static_cast<float>(k % kGrid) + 0.5f) / kGrid,
                             static_cast<float>(pixel / width) + (static_cast<float>(k / kGrid) + 0.5f) / kGrid);
     const SurfaceBuffers fine = surface.refine(view, buffers, points);
-    const Image<vec3> fine_radiance = shade(view, points, fine, scene, material);
+    const Image<vec3> fine_radiance = shade(view, points, fine, scene, material, optics);
     for (std::size_t i = 0; i < batch.size(); ++i) {
       radiance[batch[i]] = averaged({fine_radiance.data() + i * kRays, kRays});
       for (std::size_t k = 0; k < kRays; ++k) {

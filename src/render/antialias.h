@@ -10,12 +10,14 @@ namespace meniscus {
 /// Indices (row by row) of the pixels that differ from one of their four neighbours: in coverage, or because the
 /// ground hides the water in one of them; in depth, by more than two spacings beyond what the slope of the surface
 /// explains; or in normal, by more than 35 degrees.
+/// @param solids  what is seen of the scene without water, if it has edges and outlines of its own
 std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, const Scene& scene,
-                                             float spacing);
+                                             float spacing, const SceneBuffers* solids = nullptr);
 
 /// Draws those pixels anew as the average of 4 x 4 rays in each; coverage and thickness become means as well.
 void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,
-                   std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers, Image<vec3>& radiance);
+                   const OpticsInputs& optics, std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers,
+                   Image<vec3>& radiance);
 
 /// The buffers of a picture of twice the size at its own size: coverage and thickness are means; depth, normal and
 /// the rest are of the nearest of the four, colour is the mean of those that show water.

@@ -11,13 +11,41 @@
 namespace meniscus {
 namespace {
 
-/// The sun-facing side of the order of stages: what the water keeps from the ground.
+/// The solids, and what the water does to the light on them.
 Scene lit_scene(const Surface& surface, const FrameSettings& settings, StageTimes* times) {
   Scene scene(settings.environment, settings.ground);
-  if (settings.ground.visible && settings.shadow && !surface.bounds().empty())
+  const bool has_solids = !settings.solids.empty() || settings.tank.style != TankStyle::none;
+  if (has_solids) {
+    const StageTimer timer(times, "scene");
+    scene.set_tank(settings.tank);
+    scene.set_solids(settings.solids);
+  }
+  scene.set_lamps(settings.lamps);
+  if ((!settings.ground.visible && !has_solids) || surface.bounds().empty()) return scene;
+  if (settings.caustics && settings.shadow && settings.material.transparent && !settings.colour)
+    scene.set_water_light(
+        caustics(surface, scene, settings.material, settings.caustics_options, times, settings.water));
+  else if (settings.shadow)
     scene.set_water_light(
         soft_shadow(surface, settings.environment, settings.ground, settings.material, times, settings.water));
   return scene;
+}
+
+SurfelOptions surfel_options(const FrameSettings& settings, const RaycastOptions& raycast) {
+  SurfelOptions surfels = settings.surfels;
+  surfels.spacing = raycast.spacing;
+  surfels.smoothing_length = raycast.smoothing_length;
+  surfels.iso = raycast.iso;
+  surfels.keep_thin = raycast.keep_thin;
+  return surfels;
+}
+
+/// The water as the settings want it.
+std::unique_ptr<Surface> surface_of(const Particles& particles, const FrameSettings& settings,
+                                    const RaycastOptions& raycast, std::span<const vec3> colours, StageTimes* times) {
+  if (settings.method == SurfaceMethod::spheres) return make_sphere_surface(particles, 0.5f * raycast.spacing, colours);
+  if (settings.method == SurfaceMethod::raycast) return make_raycast_surface(particles, raycast, colours, times);
+  return make_surfel_surface(particles, surfel_options(settings, raycast), colours, times);
 }
 
 /// The particles without those too far away to be sorted together with the rest; nothing if there are none.
@@ -48,6 +76,10 @@ Antialias antialias_of(std::string_view name) {
   if (name == "2x2") return Antialias::full;
   throw Error(ErrorCode::invalid_argument,
               {"there is no such antialiasing", "off, edges or 2x2", std::string(name), {}, {}, {}, {}});
+}
+
+std::vector<Surfel> surfels_of(const Particles& particles, const FrameSettings& settings, StageTimes* times) {
+  return extract_surfels(particles, surfel_options(settings, settings.surface), times);
 }
 
 FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
@@ -81,20 +113,26 @@ FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
   }
 
   // The surface, and what of it is seen.
-  const std::unique_ptr<Surface> surface = settings.method == SurfaceMethod::spheres
-                                               ? make_sphere_surface(particles, 0.5f * surface_options.spacing, colours)
-                                               : make_raycast_surface(particles, surface_options, colours, times);
+  const std::unique_ptr<Surface> surface = surface_of(particles, settings, surface_options, colours, times);
   frame.buffers = surface->see(view, {}, times);
 
   // Light.
   const Scene scene = lit_scene(*surface, settings, times);
-  frame.radiance = shade(view, {}, frame.buffers, scene, settings.material, {}, times);
+  OpticsInputs optics{settings.optics, nullptr, surface.get()};
+  std::optional<SceneBuffers> behind;
+  const bool edges_of_solids = settings.antialias == Antialias::edges && !scene.solid_bounds().empty();
+  if (settings.optics.refraction == RefractionMethod::image_space || edges_of_solids) {
+    behind = scene.see(view, {}, times);
+    optics.behind = &*behind;
+  }
+  frame.radiance = shade(view, {}, frame.buffers, scene, settings.material, optics, times);
 
   // Outlines.
   if (settings.antialias == Antialias::edges) {
     const StageTimer timer(times, "antialias");
-    const std::vector<std::uint32_t> pixels = silhouette_pixels(view, frame.buffers, scene, surface_options.spacing);
-    refine_pixels(*surface, view, scene, settings.material, pixels, frame.buffers, frame.radiance);
+    const std::vector<std::uint32_t> pixels =
+        silhouette_pixels(view, frame.buffers, scene, surface_options.spacing, edges_of_solids ? &*behind : nullptr);
+    refine_pixels(*surface, view, scene, settings.material, optics, pixels, frame.buffers, frame.radiance);
   } else if (full) {
     const StageTimer timer(times, "antialias");
     frame.radiance = downsampled(frame.radiance, 2);

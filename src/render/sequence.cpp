@@ -12,7 +12,7 @@ namespace {
 
 /// The pictures of a sequence: which frame each shows and the number in its name.
 struct Shot {
-  std::string frame_path;
+  FramePath frame;
   std::int64_t number = 0;
 };
 
@@ -21,7 +21,7 @@ std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable)
   std::vector<Shot> shots;
   if (sequence.frames.size() == 1 && turntable > 0) {
     for (std::size_t i = 0; i < turntable; ++i)
-      shots.push_back({sequence.frames.front().path, static_cast<std::int64_t>(i)});
+      shots.push_back({sequence.frames.front(), static_cast<std::int64_t>(i)});
     return shots;
   }
   std::set<std::int64_t> numbers;
@@ -29,7 +29,7 @@ std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable)
     if (frame.number) numbers.insert(*frame.number);
   const bool by_name = numbers.size() == sequence.frames.size();
   for (const FramePath& frame : sequence.frames)
-    shots.push_back({frame.path, by_name ? *frame.number : static_cast<std::int64_t>(shots.size())});
+    shots.push_back({frame, by_name ? *frame.number : static_cast<std::int64_t>(shots.size())});
   return shots;
 }
 
@@ -48,14 +48,16 @@ void check(const OutputTarget& target, std::size_t pictures) {
 /// Draws shot after shot; holds what lasts from one to the next.
 class SequenceRun {
  public:
-  SequenceRun(const Survey& survey, const PictureOptions& picture, const SequenceOptions& options)
-      : survey_(survey), picture_(picture), options_(options), target_(options.output) {}
+  SequenceRun(const FrameSequence& sequence, const Survey& survey, const PictureOptions& picture,
+              const SequenceOptions& options)
+      : sequence_(sequence), survey_(survey), picture_(picture), options_(options), target_(options.output) {}
 
   SequenceReport run(const std::vector<Shot>& shots,
                      FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame) {
     check(target_, shots.size());
     if (target_.is_film() && finished(target_.path())) return all_skipped(shots, on_frame);
     settings_ = settings_of(survey_, picture_);
+    bodies_.emplace(picture_.bodies);
     SequenceReport report;
     for (std::size_t i = 0; i < shots.size(); ++i) {
       report.frames.push_back(one(shots[i], i, shots.size()));
@@ -77,7 +79,7 @@ class SequenceRun {
     SequenceReport report;
     for (const Shot& shot : shots) {
       FrameReport frame;
-      frame.path = shot.frame_path;
+      frame.path = shot.frame.path;
       frame.output = target_.path();
       frame.skipped = true;
       report.frames.push_back(std::move(frame));
@@ -90,7 +92,7 @@ class SequenceRun {
   FrameReport one(const Shot& shot, std::size_t index, std::size_t count) {
     const auto start = std::chrono::steady_clock::now();
     FrameReport report;
-    report.path = shot.frame_path;
+    report.path = shot.frame.path;
     report.output = target_.path_of(shot.number);
     if (!target_.is_film() && finished(report.output)) {
       report.skipped = true;
@@ -113,13 +115,18 @@ class SequenceRun {
     std::shared_ptr<const Particles> particles = survey_.only_frame;
     if (!particles) {
       const StageTimer timer(&report.times, "read");
-      particles = std::make_shared<Particles>(read_particles(shot.frame_path));
+      particles = std::make_shared<Particles>(read_frame(sequence_, shot.frame));
     }
     if (particles->dropped_non_finite > 0)
       report.notes.push_back(
           fmt::format("{} particles with NaN or infinite positions are left out", particles->dropped_non_finite));
     report.notes.insert(report.notes.end(), particles->notes.begin(), particles->notes.end());
     settings_->view = view_of(survey_, picture_, index, count, options_.video.frames_per_second);
+    if (target_.format() == PictureFormat::ply) {
+      write_surfels(report, *particles);
+      return;
+    }
+    settings_->solids = bodies_->at(index, shot.number, report.notes);
     FramePicture frame = render_frame(*particles, *settings_);
     report.particles = frame.particles;
     if (frame.far_away > 0)
@@ -131,6 +138,22 @@ class SequenceRun {
     const StageTimer timer(&report.times, "write");
     writing_ = true;
     write(report.output, frame);
+    writing_ = false;
+  }
+
+  void write_surfels(FrameReport& report, const Particles& particles) {
+    const std::vector<Surfel> surfels = surfels_of(particles, *settings_, &report.times);
+    report.particles = particles.size();
+    const StageTimer timer(&report.times, "write");
+    std::vector<vec3> positions, normals;
+    std::vector<float> radii;
+    for (const Surfel& surfel : surfels) {
+      positions.push_back(surfel.position);
+      normals.push_back(surfel.normal);
+      radii.push_back(surfel.radius);
+    }
+    writing_ = true;
+    write_point_ply(report.output, positions, normals, radii);
     writing_ = false;
   }
 
@@ -147,14 +170,18 @@ class SequenceRun {
         film_->add(frame.picture);
         last_picture_ = std::move(frame.picture);
         break;
+      case PictureFormat::ply:
+        break;  // holds no picture
     }
   }
 
+  const FrameSequence& sequence_;
   const Survey& survey_;
   const PictureOptions& picture_;
   const SequenceOptions& options_;
   OutputTarget target_;
   std::optional<FrameSettings> settings_;
+  std::optional<Bodies> bodies_;
   std::optional<VideoWriter> film_;
   Image<Rgb8> last_picture_;
   std::exception_ptr first_error_;
@@ -170,7 +197,7 @@ void check_output(const FrameSequence& sequence, const SequenceOptions& options)
 SequenceReport render_sequence(const FrameSequence& sequence, const Survey& survey, const PictureOptions& picture,
                                const SequenceOptions& options,
                                FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame) {
-  return SequenceRun(survey, picture, options).run(shots_of(sequence, options.turntable), on_frame);
+  return SequenceRun(sequence, survey, picture, options).run(shots_of(sequence, options.turntable), on_frame);
 }
 
 SequenceReport render_files(std::span<const std::string> what, const std::string& output,

@@ -27,6 +27,8 @@ Material material_of(const Survey& survey, const PictureOptions& options) {
       throw Error(ErrorCode::invalid_argument, "a tint needs three numbers above 0 and up to 1");
     material.extinction = -glm::log(tint) / scale;
   }
+  if (options.ior) material.ior = *options.ior;
+  if (options.roughness) material.roughness = *options.roughness;
   if (options.extinction) {
     const vec3 extinction = *options.extinction;
     if (!(std::min({extinction.x, extinction.y, extinction.z}) >= 0 && std::isfinite(longest_of(extinction))))
@@ -46,10 +48,32 @@ Ground ground_of(const Survey& survey, const PictureOptions& options) {
   ground.visible = options.ground != GroundStyle::none;
   ground.up = up;
   ground.height = ground_height(survey, options);
+  if (options.tank == TankStyle::tiled) ground.height -= 0.02f * size;  // the tank has a floor of its own
+  if (options.ground_albedo) {
+    ground.albedo = *options.ground_albedo;
+    ground.second_albedo = 0.7f * ground.albedo;
+  }
   ground.square = options.ground == GroundStyle::chequer ? round_length(size / 8) : 0.0f;
   ground.centre = centre + up * (ground.height - glm::dot(centre, up));
   ground.fade_radius = 12 * size;
   return ground;
+}
+
+/// Fitted around the water of all frames, open above it.
+Tank tank_of(const Survey& survey, const PictureOptions& options) {
+  Tank tank;
+  tank.style = options.tank;
+  tank.up = direction_of(survey.up.axis);
+  if (options.tank_albedo) tank.albedo = *options.tank_albedo;
+  tank.inside = options.tank_inside.value_or(survey.bounds.grown(0.5f * spacing_of(survey, options)));
+  if (tank.inside.empty()) tank.style = TankStyle::none;
+  if (!options.tank_inside && tank.style != TankStyle::none) {
+    // It stands on the ground, and its rim is above the highest drop.
+    const vec3 across = vec3{1.0f} - tank.up;
+    tank.inside.low = tank.inside.low * across + tank.up * ground_height(survey, options);
+    tank.inside.high += tank.up * (0.05f * longest_of(tank.inside.extent()));
+  }
+  return tank;
 }
 
 }  // namespace
@@ -86,9 +110,10 @@ vec2 sun_deg(const Survey& survey, const PictureOptions& options) {
 
 SurfaceMethod surface_method_of(std::string_view name) {
   if (name == "raycast") return SurfaceMethod::raycast;
+  if (name == "surfels") return SurfaceMethod::surfels;
   if (name == "spheres") return SurfaceMethod::spheres;
   throw Error(ErrorCode::invalid_argument,
-              {"there is no such surface", "raycast or spheres", std::string(name), {}, {}, {}, {}});
+              {"there is no such surface", "raycast, surfels or spheres", std::string(name), {}, {}, {}, {}});
 }
 
 GroundStyle ground_style_of(std::string_view name) {
@@ -115,8 +140,15 @@ FrameSettings settings_of(const Survey& survey, const PictureOptions& options) {
   environment.up = direction_of(survey.up.axis);
   const vec2 sun = sun_deg(survey, options);
   environment.sun_direction = direction_towards(survey.up.axis, sun.x, sun.y);
+  environment.sun_radiance_scale = options.sun_scale;
   settings.environment = Environment(environment);
   settings.ground = ground_of(survey, options);
+  settings.tank = tank_of(survey, options);
+  settings.lamps = options.lamps;
+  settings.optics = options.optics;
+  settings.caustics = options.caustics;
+  settings.caustics_options = options.caustics_options;
+  settings.surfels = options.surfels;
   settings.water = survey.bounds.grown(2 * settings.surface.spacing);
   settings.shadow = options.shadow;
   settings.tone = options.tone;

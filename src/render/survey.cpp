@@ -78,7 +78,7 @@ Survey survey_frames(const FrameSequence& sequence, const SurveyOptions& options
     const std::size_t frame = looked_at > 1 ? i * (count - 1) / (looked_at - 1) : 0;
     std::shared_ptr<const Particles> particles;
     try {
-      particles = std::make_shared<Particles>(read_particles(sequence.frames[frame].path));
+      particles = std::make_shared<Particles>(read_frame(sequence, sequence.frames[frame]));
     } catch (const Error& error) {
       if (options.strict || count == 1) throw;
       surveyor.survey().unreadable.emplace_back(error.what());

@@ -51,6 +51,7 @@ PictureFormat format_of(const std::string& path) {
   if (extension == ".png") return PictureFormat::png;
   if (extension == ".exr") return PictureFormat::exr;
   if (extension == ".mp4") return PictureFormat::mp4;
+  if (extension == ".ply") return PictureFormat::ply;
   throw Error(ErrorCode::invalid_argument, {"the kind of picture is not told by this output",
                                             ".png, .exr or .mp4",
                                             extension.empty() ? "no extension" : extension,
