@@ -54,7 +54,8 @@ class Surface {
 
   /// The first place, `from[i]` m from its origin or farther and no farther than `limit[i]`, where ray i crosses the
   /// surface: into the water, or out of it where inside[i] != 0. A ray that is not where `inside` says (by rounding
-  /// near the surface) crosses at the first true change. Consecutive rays are cheapest when they lie close together.
+  /// near the surface) crosses at the first true change if it comes to that side soon, within about a spacing of the
+  /// particles, else where it starts. Consecutive rays are cheapest when they lie close together.
   /// All spans have the same length.
   /// @throws Error unsupported: a surface that cannot march
   virtual void crossings(std::span<const Ray> rays, std::span<const float> from, std::span<const float> limit,
@@ -121,12 +122,13 @@ struct DensityGrid {
 };
 
 /// Particles as the density is summed from: relative density rho(x) = spacing^3 sum_j m_j W(|x - p_j|, h), which is
-/// one inside a lattice of that spacing. `kernel`, `smoothing_length`, `spacing`, `keep_thin` of the options count.
+/// one inside a lattice of that spacing.
 struct DensityOptions {
   float spacing = 0;           ///< m, > 0
   float smoothing_length = 0;  ///< m; 0: 2 spacings
   Kernel kernel = Kernel::wyvill;
   bool keep_thin = true;  ///< masses as in RaycastOptions
+  float iso = 0.5f;       ///< of the surface that those masses are made for; no matter else
 };
 
 /// The density at every point of a grid, x fastest, then y, then z: metaball discs splatted slab by slab, four planes
