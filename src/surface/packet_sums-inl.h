@@ -128,8 +128,8 @@ HWY_INLINE void sum_density_by_kernel(const RaycastField& field, const PacketLis
   }
 }
 
-HWY_NOINLINE void density_along_rays(const RaycastField& field, const PacketList& list, const PacketRays& rays,
-                                     const float* t, float* rho) {
+HWY_MAYBE_UNUSED HWY_NOINLINE void density_along_rays(const RaycastField& field, const PacketList& list,
+                                                      const PacketRays& rays, const float* t, float* rho) {
   const Tag d;
   sum_density_by_kernel(
       field, list,
@@ -156,8 +156,8 @@ HWY_NOINLINE void density_at_points(const RaycastField& field, const PacketList&
 }
 
 /// Averages of the colours, weighted by m_j W(r, h).
-HWY_NOINLINE void colours_from_list(const RaycastField& field, const PacketList& list, const PacketPoints& points,
-                                    PacketPoints& colours) {
+HWY_MAYBE_UNUSED HWY_NOINLINE void colours_from_list(const RaycastField& field, const PacketList& list,
+                                                     const PacketPoints& points, PacketPoints& colours) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length);

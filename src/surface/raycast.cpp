@@ -1,9 +1,13 @@
 // The ray-cast surface [Xiao2017]: splatted entry depth, marched iso-surface, blended and filtered normals.
+#include <tbb/task_arena.h>
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <mutex>
+#include <optional>
 
 #include "surface/hidden_cells.h"
+#include "surface/march.h"
 #include "surface/normal_filter.h"
 #include "surface/packet.h"
 #include "surface/splat.h"
@@ -149,6 +153,15 @@ class RaycastSurface final : public Surface {
         view, {{grid.x(), grid.size()}, {grid.y(), grid.size()}, {grid.z(), grid.size()}, {&r, 1}}, weight, stride);
     const float spacing_px = s / view.pixel_size(middle_depth(view)) / static_cast<float>(stride);
     return enlarged(smoothed_thickness(coarse, std::min(spacing_px, 4.0f), s), stride, view, points);
+  }
+
+  bool can_march() const override { return true; }
+
+  void crossings(std::span<const Ray> rays, std::span<const float> from, std::span<const float> limit,
+                 std::span<const std::uint8_t> inside, std::span<Crossing> found) const override {
+    // Isolated, so that the thread that makes the cells does not begin other work that waits for them.
+    std::call_once(cells_made_, [&] { tbb::this_task_arena::isolate([&] { cells_.emplace(field_); }); });
+    march_crossings(field_, *cells_, rays, from, limit, inside, found);
   }
 
   Bounds bounds() const override { return field_.grid.bounds().grown(field_.options.smoothing_length); }
@@ -403,6 +416,8 @@ class RaycastSurface final : public Surface {
   RaycastField field_;
   SphereSet spheres_;
   float thickness_radius_ = 0;  ///< m
+  mutable std::once_flag cells_made_;
+  mutable std::optional<MarchCells> cells_;  ///< made when rays are followed for the first time
 };
 
 }  // namespace
