@@ -102,6 +102,8 @@ struct Mesh {
   std::vector<std::uint32_t> corners;    ///< three a triangle, each < positions.size()
   std::vector<SolidMaterial> materials;  ///< empty: one default material
   std::vector<std::uint32_t> material_of;  ///< one a triangle, each < materials.size(); empty: all the first
+  /// Pictures that the file held itself, still encoded; a material whose texture is "*2" wears number 2.
+  std::vector<std::vector<unsigned char>> pictures;
 };
 
 /// Reads OBJ, PLY, glTF and what else Assimp knows; nodes' transforms are applied, polygons cut into triangles.

@@ -1,0 +1,38 @@
+/// Solids where they stand, as one thing for rays.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+
+#include "scene/solid.h"
+
+namespace meniscus {
+
+class PlacedSolids {
+ public:
+  /// @throws Error invalid_argument: no solid, a transform that is not affine or not invertible, a bad material
+  explicit PlacedSolids(std::vector<PlacedSolid> placed);
+  Bounds bounds() const { return bounds_; }
+  /// The first triangle between `from` and `limit` m along the ray.
+  SolidHit hit(const Ray& ray, Beam beam, float from, float limit) const;
+  /// Distance to it alone; infinity if there is none.
+  float distance(const Ray& ray, float from, float limit) const;
+  /// Whether there is any.
+  bool blocks(const Ray& ray, float from, float limit) const;
+
+ private:
+  struct Place {
+    std::shared_ptr<const BuiltSolid> solid;
+    glm::mat3 linear;   ///< of world_from_solid
+    glm::mat3 normals;  ///< its inverse transpose
+    std::optional<SolidMaterial> material;
+    std::shared_ptr<const Texture> texture;  ///< of `material`
+  };
+  SolidHit described(const Ray& ray, Beam beam, float distance, std::size_t place, std::size_t triangle, float u,
+                     float v) const;
+
+  std::vector<Place> places_;
+  EmbreeScene scene_;
+  Bounds bounds_;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,152 @@
+// Light on solids and what leaves them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "meniscus/formulas.h"
+#include "scene/direction_map.h"
+#include "scene/scene_parts.h"
+
+namespace meniscus {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
+/// Half of the width of the sun's disc, radians.
+constexpr float kSunRadius = 0.00465f;
+constexpr float kBrightestGlare = 200.0f;
+
+/// Cosine of light on a face with an interpolated normal, that goes to zero smoothly where the flat face itself turns
+/// away, so that neither light leaks through nor facets show.                                          [Chiang2019]
+float facing(vec3 normal, vec3 face_normal, vec3 towards_light) {
+  const float cos_normal = glm::dot(normal, towards_light);
+  if (!(cos_normal > 0)) return 0;
+  const float cos_face = glm::dot(face_normal, towards_light);
+  if (!(cos_face > 0)) return 0;
+  const float agree = glm::dot(normal, face_normal);
+  if (agree > 0.99999f) return cos_normal;
+  const float g = std::min(1.0f, cos_face / (cos_normal * std::max(agree, 1e-4f)));
+  return cos_normal * (g + g * g - g * g * g);
+}
+
+/// Points of the unit disc, the first four on its edge.
+constexpr std::array<vec2, 16> kDisc{{{0.92f, 0.38f},
+                                      {-0.38f, 0.92f},
+                                      {-0.92f, -0.38f},
+                                      {0.38f, -0.92f},
+                                      {0.25f, 0.10f},
+                                      {-0.10f, 0.25f},
+                                      {-0.25f, -0.10f},
+                                      {0.10f, -0.25f},
+                                      {0.33f, 0.56f},
+                                      {-0.56f, 0.33f},
+                                      {-0.33f, -0.56f},
+                                      {0.56f, -0.33f},
+                                      {0.63f, 0.02f},
+                                      {-0.02f, 0.63f},
+                                      {-0.63f, -0.02f},
+                                      {0.02f, -0.63f}}};
+
+}  // namespace
+
+vec3 Scene::Parts::sun_seen(vec3 point, vec3 face_normal, float footprint) const {
+  const vec3 sun = environment.sun_direction();
+  const float away = clearance(point);
+  const vec3 start = point + away * face_normal;
+  vec3 light{1.0f};
+  if (body) light = body->light_transmittance({start, sun}, kInfinity);
+  if (!solids) return light;
+  // A cone around the sun that starts as wide as what is averaged: four rays on its edge, more where they disagree.
+  const UpFrame frame = up_frame(sun);
+  int seen = 0;
+  const auto ray_seen = [&](std::size_t i) {
+    const vec3 offset = kDisc[i].x * frame.east + kDisc[i].y * frame.north;
+    // Starting points stay in the face, where they do not fall under it.
+    vec3 beside = (0.5f * footprint) * offset;
+    beside -= glm::dot(beside, face_normal) * face_normal;
+    return !solids->blocks({start + beside, glm::normalize(sun + kSunRadius * offset)}, 0, kInfinity);
+  };
+  for (std::size_t i = 0; i < 4; ++i) seen += ray_seen(i) ? 1 : 0;
+  if (seen == 0) return vec3{0.0f};
+  if (seen == 4) return light;
+  for (std::size_t i = 4; i < kDisc.size(); ++i) seen += ray_seen(i) ? 1 : 0;
+  return light * (static_cast<float>(seen) / static_cast<float>(kDisc.size()));
+}
+
+vec3 Scene::Parts::irradiance(vec3 point, vec3 normal, vec3 face_normal, float footprint) const {
+  WaterLight::Light light;
+  if (water_light) light = water_light->at(point, normal);
+  vec3 sum = light.sky * environment.irradiance(normal) + light.refracted;
+
+  const float sun_facing = facing(normal, face_normal, environment.sun_direction());
+  const vec3 sun = light.sun * environment.sun_irradiance() * sun_facing;
+  if (sun != vec3{0.0f}) sum += (solids || body) ? sun * sun_seen(point, face_normal, footprint) : sun;
+
+  for (const PointLight& lamp : lamps) {
+    const vec3 way = lamp.position - point;
+    const float length = glm::length(way);
+    if (!(length > 0)) continue;
+    const vec3 towards = way / length;
+    vec3 arrives = light.lamps * lamp.intensity * (facing(normal, face_normal, towards) / (length * length));
+    if (arrives == vec3{0.0f}) continue;
+    const Ray ray{point + clearance(point) * face_normal, towards};
+    if (body) arrives *= body->light_transmittance(ray, length);
+    if (solids && solids->blocks(ray, 0, length)) continue;
+    sum += arrives;
+  }
+  return sum;
+}
+
+vec3 Scene::irradiance(vec3 point, vec3 normal, vec3 face_normal) const {
+  return parts_->irradiance(point, normal, face_normal, 0.0f);
+}
+
+vec3 Scene::lit(const SolidHit& hit, const Ray& ray, Beam beam) const {
+  const Parts& parts = *parts_;
+  const float width = beam.width + beam.spread * hit.distance;
+  const vec3 point = ray.origin + hit.distance * ray.direction;
+  const vec3 diffuse = hit.albedo * kPerPi * parts.irradiance(point, hit.normal, hit.face_normal, width);
+  if (hit.roughness >= 1.0f) return diffuse;
+
+  // A clear coat: its mirror image of what surrounds the solid, which shows no coats itself, and of the sun.
+  const float reflectance = formulas::fresnel_reflectance(-glm::dot(hit.normal, ray.direction), hit.ior);
+  vec3 direction = formulas::mirrored(ray.direction, hit.normal);
+  const float under = glm::dot(direction, hit.face_normal);
+  if (under < 0.01f) direction = glm::normalize(direction + (0.01f - under) * hit.face_normal);
+  const Ray mirror{point + parts.clearance(point) * hit.face_normal, direction};
+  const float sigma = 0.8f * hit.roughness * hit.roughness;
+  const Beam widened{width, beam.spread + 2.0f * sigma};
+  const SolidHit seen = this->hit(mirror, widened);
+  vec3 image{0.0f};
+  if (seen.presence < 1.0f || !seen.found()) image = parts.environment.radiance(direction, hit.roughness);
+  if (seen.found()) {
+    const vec3 body = seen.albedo * kPerPi *
+                      parts.irradiance(mirror.origin + seen.distance * direction, seen.normal, seen.face_normal, width);
+    image = glm::mix(image, body, seen.presence);
+  }
+  vec3 glare = parts.environment.sun_glare(direction, sigma * sigma);
+  if (glare != vec3{0.0f}) {
+    if (parts.water_light) glare *= parts.water_light->at(point, hit.normal).sun;
+    if (facing(hit.normal, hit.face_normal, parts.environment.sun_direction()) > 0)
+      image += glm::min(glare * parts.sun_seen(point, hit.face_normal, width), vec3{kBrightestGlare});
+  }
+  // Rough coats lose contrast and with it their mirror image, until none is left.
+  const float share = reflectance * (1.0f - hit.roughness);
+  return (1.0f - share) * diffuse + share * image;
+}
+
+vec3 Scene::radiance(const Ray& ray, float footprint) const { return radiance(ray, Beam{0.0f, footprint}); }
+
+vec3 Scene::radiance(const Ray& ray, Beam beam, float roughness) const {
+  const SolidHit found = hit(ray, beam);
+  if (!found.found()) return parts_->environment.radiance(ray.direction, roughness);
+  const vec3 seen = lit(found, ray, beam);
+  if (found.presence >= 1.0f) return seen;
+  return glm::mix(parts_->environment.radiance(ray.direction, roughness), seen, found.presence);
+}
+
+}  // namespace meniscus

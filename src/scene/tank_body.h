@@ -1,0 +1,55 @@
+/// A tank as rays and light meet it.
+#pragma once
+
+#include <array>
+
+#include "meniscus/scene.h"
+
+namespace meniscus {
+
+/// Everything is analytic: a handful of planes and bars.
+///
+/// tiled: a floor and four walls that are seen from the inside only, and a flat rim around the upper edge that is seen
+/// from above only. None of them keeps light out.
+/// glass: twelve bars along the edges that rays meet, and four panes that they pass.
+class TankBody {
+ public:
+  /// @throws Error invalid_argument: no space inside, an up direction that is no axis, sizes or colours out of range
+  explicit TankBody(const Tank& tank);
+
+  /// With walls and bars.
+  Bounds bounds() const { return outside_; }
+  /// The first part of the tank between `from` and `limit` m along the ray.
+  SolidHit hit(const Ray& ray, Beam beam, float from, float limit) const;
+  /// Whether a point at the height of the ground is over the space of a tiled tank that is sunk into it.
+  bool opens_ground(vec3 point) const;
+  /// What is left of light along a ray of this length.
+  vec3 light_transmittance(const Ray& ray, float length) const;
+
+  /// A pane that a ray crosses.
+  struct Pane {
+    float distance;
+    vec3 normal;         ///< unit, towards the ray's origin
+    float reflectance;   ///< of both faces together
+    vec3 transmittance;  ///< of light that goes straight through
+  };
+  struct Panes {
+    std::array<Pane, 4> panes;
+    int count = 0;
+  };
+  /// The panes before `limit` m along the ray, the nearest first.
+  Panes panes(const Ray& ray, float limit) const;
+
+ private:
+  SolidHit tiled_hit(const Ray& ray, Beam beam, float from, float limit) const;
+  SolidHit bar_hit(const Ray& ray, float from, float limit) const;
+  vec3 tiles(vec3 point, int axis, const Ray& ray, float width) const;
+
+  Tank tank_;
+  Bounds outside_;
+  vec3 tile_{1.0f};  ///< edges of the tiles along the axes, m: whole tiles on every wall
+  std::array<Bounds, 12> bars_;
+  int up_ = 1, side_ = 2, other_ = 0;  ///< axes
+};
+
+}  // namespace meniscus
