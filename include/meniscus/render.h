@@ -199,7 +199,8 @@ struct BodyOptions {
   std::optional<SolidMaterial> material;  ///< instead of the file's own
 };
 
-/// The bodies of a sequence: read once, placed for each frame; those of one file a frame are read as they come.
+/// The bodies of a sequence: read once, placed for each frame; those of one file a frame are read as they come, and the
+/// last one is kept. One thread at a time.
 class Bodies {
  public:
   /// @throws Error  as read_mesh() and make_solid(), for bodies that stand in one file; invalid_argument: neither path
@@ -208,14 +209,19 @@ class Bodies {
   /// @param index   place in the film, from 0
   /// @param number  in the particle file's name; what `{}` stands for
   /// @param notes   what a user should be told: a body whose file of this frame is missing is left out
+  /// @throws Error  as read_mesh() and make_solid(), for a body's file of this frame
   std::vector<PlacedSolid> at(std::size_t index, std::int64_t number, std::vector<std::string>& notes) const;
   bool empty() const { return bodies_.empty(); }
   /// Whether the bodies are the same in all frames.
   bool still() const;
 
  private:
+  struct Read {
+    std::string path;  ///< of the frame's file; empty for bodies that stand in one
+    std::shared_ptr<const Solid> solid;
+  };
   std::vector<BodyOptions> bodies_;
-  std::vector<std::shared_ptr<const Solid>> solids_;  ///< one a body; null where there is a file a frame
+  mutable std::vector<Read> read_;  ///< one a body
 };
 
 // --- What a user may set -----------------------------------------------------------------------------------
@@ -357,11 +363,12 @@ SequenceReport render_files(std::span<const std::string> what, const std::string
 
 /// Waves in a tank, made up rather than simulated.
 struct WavesOptions {
-  std::size_t particles = 100000;
+  std::size_t particles = 100000;  ///< about: they fill a lattice
   std::size_t frames = 50;
   double frames_per_second = 25;
   vec3 size{2.0f, 0.5f, 1.0f};  ///< m; of the still water, y up, its lower corner at the origin
-  float height = 0.06f;         ///< m, of the waves from the still level
+  float height = 0.06f;         ///< m, of the waves from the still level, at most
+  float shortest = 0;           ///< m, shortest wavelength; 0: an eighth of the longer horizontal side
 };
 
 /// A picture or a film described in a JSON file: docs/scene_file.md.
@@ -381,9 +388,15 @@ struct SceneFile {
 ///                name), a value of the wrong kind or outside its range
 SceneFile read_scene_file(const std::string& path);
 
-/// Water with waves as particles on a displaced lattice, as synthetic_tank() makes them: superposed dynamic waves that
-/// obey the dispersion of gravity waves over the tank's depth and are reflected by its walls.
+/// A JSON Schema (draft 2020-12) of scene files; docs/scene.schema.json holds a copy.
+std::string scene_file_schema();
+
+/// Water with waves as particles on a displaced lattice: superposed standing waves that obey the dispersion of gravity
+/// waves over the tank's depth, omega^2 = g k tanh(k depth), and are reflected by its walls. A particle keeps its
+/// place in the lists at all times and moves continuously. Particles::spacing, up and time are set; there is an
+/// attribute "velocity", m/s.
 /// @param time  s
+/// @throws Error  invalid_argument: no particles, sizes that are not positive, waves too high for their length
 Particles synthetic_waves(const WavesOptions& options, double time);
 /// The waves as a sequence that is made up frame by frame.
 FrameSequence waves_sequence(const WavesOptions& options);

@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include "meniscus/render.h"
+#include "render/synthetic_random.h"
 
 namespace meniscus {
 namespace {
@@ -11,24 +12,6 @@ constexpr float kSide = 2.0f;    ///< m: the tank is kSide x about 1 x kSide
 constexpr float kJitter = 0.2f;  ///< spacings
 constexpr std::size_t kMostDrops = 400;
 constexpr std::size_t kMostInDrop = 500;
-
-/// Independent of libraries, so that the scene is the same everywhere [Steele2014, SplitMix64].
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t bits() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
-  /// In [0, 1).
-  float unit() { return static_cast<float>(bits() >> 40) * 0x1p-24f; }
-  float between(float low, float high) { return low + (high - low) * unit(); }
-
- private:
-  std::uint64_t state_;
-};
 
 /// Height of the waves over the mean surface, m.
 float wave(float x, float z) {

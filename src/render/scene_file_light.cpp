@@ -1,0 +1,161 @@
+/// The sections on light: environment, lights, optics, caustics.
+#include "render/scene_file_fields.h"
+
+namespace meniscus::scene_file {
+namespace {
+
+PictureOptions& picture(Draft& d) { return d.scene.picture; }
+CausticsOptions& caustics(Draft& d) { return d.scene.picture.caustics_options; }
+PointLight& lamp(Draft& d) { return d.scene.picture.lamps.back(); }
+int whole(const JsonValue& v) { return static_cast<int>(v.integer()); }
+
+const Section& sun_section() {
+  static const Section section{
+      "lights.sun",
+      "Where the sun stands and how bright it is. Azimuth and elevation are said together.",
+      {{"azimuth",
+        {a_number(between(-36000, 36000))},
+        "(behind the water to the right)",
+        "Degrees, as for the camera",
+        nullptr},
+       {"elevation", {a_number(between(-90, 90))}, "(42)", "Degrees above the horizon", nullptr},
+       {"scale",
+        {a_number(between(0, 1e6))},
+        "1",
+        "Factor of the sun's light",
+        [](const JsonValue& v, Draft& d) { picture(d).sun_scale = v.real(); }}},
+      nullptr,
+      [](const JsonValue& value, Draft& draft) {
+        const bool azimuth = value.has("azimuth"), elevation = value.has("elevation");
+        if (azimuth != elevation)
+          value.refuse("says only half of where the sun is", "azimuth and elevation",
+                       azimuth ? "azimuth alone" : "elevation alone");
+        if (azimuth) picture(draft).sun_deg = vec2(value.member("azimuth").real(), value.member("elevation").real());
+      }};
+  return section;
+}
+
+const Section& lamp_section() {
+  static const Section section{
+      "lights.lamps[]",
+      "A lamp without extent.",
+      {{"position",
+        {numbers(3)},
+        "(must be said)",
+        "m",
+        [](const JsonValue& v, Draft& d) { lamp(d).position = v.three(); }},
+       {"intensity",
+        {a_number(between(0, 1e12)), numbers(3, between(0, 1e12))},
+        "1",
+        "Irradiance that it gives at 1 m, as one number or as red, green and blue",
+        [](const JsonValue& v, Draft& d) { lamp(d).intensity = v.is_list() ? v.three() : vec3(v.real()); }}},
+      [](Draft& d) { picture(d).lamps.emplace_back(); },
+      [](const JsonValue& value, Draft&) {
+        if (!value.has("position")) value.refuse("has no position", "[x, y, z] in metres", "none");
+      }};
+  return section;
+}
+
+}  // namespace
+
+const Section& lights_section() {
+  static const Section section{
+      "lights",
+      "What shines on the scene beside the sky.",
+      {{"sun", {an_object(sun_section())}, "(as below)", "The sun", nullptr},
+       {"lamps", {objects(lamp_section())}, "[]", "Lamps", nullptr},
+       {"shadow", {a_boolean()}, "true", "The water casts shadow or caustics", [](const JsonValue& v, Draft& d) {
+          picture(d).shadow = v.boolean();
+        }}}};
+  return section;
+}
+
+const Section& environment_section() {
+  static const Section section{
+      "environment",
+      "The sky.",
+      {{"hdr",
+        {{Kind::file}},
+        "(an analytic sky)",
+        "Environment map, equirectangular Radiance .hdr",
+        [](const JsonValue& v, Draft& d) { picture(d).environment_hdr = d.resolved(v.text()); }}}};
+  return section;
+}
+
+const Section& optics_section() {
+  static const Section section{
+      "optics",
+      "How rays go on behind the water's surface.",
+      {{"refraction",
+        {a_name({"thickness", "image_space", "ray_traced"})},
+        "\"thickness\"",
+        "One interface, the far side guessed; one interface, iteration in the picture of the scene; or rays through "
+        "the water",
+        [](const JsonValue& v, Draft& d) { picture(d).optics.refraction = refraction_method_of(v.text()); }},
+       {"bounces",
+        {an_integer(1, 64)},
+        "8",
+        "ray_traced: interfaces in one path at most",
+        [](const JsonValue& v, Draft& d) { picture(d).optics.bounces = whole(v); }},
+       {"iterations",
+        {an_integer(1, 256)},
+        "8",
+        "image_space: projections onto the ray at most",
+        [](const JsonValue& v, Draft& d) { picture(d).optics.iterations = whole(v); }},
+       {"threshold",
+        {a_number(above(0))},
+        "(from the pixels)",
+        "image_space: distance from the scene that counts as met, m",
+        [](const JsonValue& v, Draft& d) { picture(d).optics.threshold = v.real(); }}}};
+  return section;
+}
+
+const Section& caustics_section() {
+  static const Section section{
+      "caustics",
+      "Light that the water bends onto the solids. `true` or an object: with caustics; `false`: a soft shadow instead.",
+      {{"screen",
+        {whole_numbers(2, between(0, 16384))},
+        "[0, 0]",
+        "Width and height of the virtual screen, px; 0: by the water's extent, 512 along the longer side, and square "
+        "pixels",
+        [](const JsonValue& v, Draft& d) {
+          caustics(d).screen_width = whole(v.at(0));
+          caustics(d).screen_height = whole(v.at(1));
+        }},
+       {"direction",
+        {a_name({"light", "up"})},
+        "\"light\"",
+        "What the screen is perpendicular to",
+        [](const JsonValue& v, Draft& d) {
+          caustics(d).screen = v.text() == "up" ? ScreenDirection::up : ScreenDirection::light;
+        }},
+       {"iterations",
+        {an_integer(1, 256)},
+        "8",
+        "Of the intersection with the geometry map",
+        [](const JsonValue& v, Draft& d) { caustics(d).iterations = whole(v); }},
+       {"threshold",
+        {a_number(above(0))},
+        "(half a pixel of the geometry map)",
+        "Distance from the scene that counts as met, m",
+        [](const JsonValue& v, Draft& d) { caustics(d).threshold = v.real(); }},
+       {"exact_hits",
+        {a_boolean()},
+        "false",
+        "Refracted light meets the scene by ray, not in the geometry map",
+        [](const JsonValue& v, Draft& d) { caustics(d).exact_hits = v.boolean(); }},
+       {"map_size",
+        {an_integer(0, 16384)},
+        "0",
+        "Texels along the longer side of the light map; 0: 1024",
+        [](const JsonValue& v, Draft& d) { caustics(d).map_size = whole(v); }},
+       {"most_lights",
+        {an_integer(0, 64)},
+        "4",
+        "Sun and lamps that make caustics, the brightest first",
+        [](const JsonValue& v, Draft& d) { caustics(d).most_lights = whole(v); }}}};
+  return section;
+}
+
+}  // namespace meniscus::scene_file
