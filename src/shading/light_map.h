@@ -2,6 +2,7 @@
 #pragma once
 
 #include "meniscus/scene.h"
+#include "meniscus/shading.h"
 
 namespace meniscus {
 
@@ -22,6 +23,10 @@ class LightMap : public WaterLight {
   vec2 origin_;
   Image<Fractions> texels_;
 };
+
+/// Only what the water takes away of the sky's light, as soft_shadow() has it, in coarse texels; the sun's part is one.
+std::shared_ptr<const WaterLight> sky_shadow(const Surface& surface, const Environment& environment,
+                                             const Ground& ground, const Material& material, const Bounds& region);
 
 /// Blurs by three box filters, which come close to a Gaussian; beyond the edge the edge's value goes on.
 void blur(Image<vec3>& image, float sigma_px);

@@ -13,6 +13,7 @@ namespace {
 
 /// Texels along the longer edge, and the part of it that is left free around the water for the blur.
 constexpr int kTexels = 400;
+constexpr int kSkyTexels = 128;  ///< where only the sky's light is asked for
 constexpr float kMargin = 0.16f;
 /// Standard deviations of the blurs, as parts of the longer edge of the water: the slopes that bend light, the sun's
 /// penumbra, the shadow in the sky's light.
@@ -27,7 +28,7 @@ constexpr float kBrightest = 4.0f;
 constexpr float kMostSkyTaken = 0.8f;
 
 /// Orthographic view along the sun's rays that holds the water.
-View view_from_sun(const Bounds& bounds, vec3 sun, vec3 up, float& extent) {
+View view_from_sun(const Bounds& bounds, vec3 sun, vec3 up, int texels, float& extent) {
   const float radius = std::max(0.5f * glm::length(bounds.extent()), 1e-6f);
   View view = orthographic_view(bounds.centre() + 2.0f * radius * sun, bounds.centre(), up, 1.0f, 1, 1);
   vec2 half{1e-6f};
@@ -39,7 +40,7 @@ View view_from_sun(const Bounds& bounds, vec3 sun, vec3 up, float& extent) {
   }
   extent = 2.0f * std::max(half.x, half.y);
   half += vec2{kMargin * extent};
-  const float texel = 2.0f * std::max(half.x, half.y) / static_cast<float>(kTexels);
+  const float texel = 2.0f * std::max(half.x, half.y) / static_cast<float>(texels);
   view.width = std::max(8, static_cast<int>(std::ceil(2.0f * half.x / texel)));
   view.height = std::max(8, static_cast<int>(std::ceil(2.0f * half.y / texel)));
   view.half_height = 0.5f * texel * static_cast<float>(view.height);
@@ -82,12 +83,9 @@ class Unshadowed : public WaterLight {
   Light at(vec3, vec3) const override { return {}; }
 };
 
-}  // namespace
-
-std::shared_ptr<const WaterLight> soft_shadow(const Surface& surface, const Environment& environment,
-                                              const Ground& ground, const Material& material, StageTimes* times,
-                                              const Bounds& region) {
-  const StageTimer timer(times, "shadow");
+/// @param sun_too  false: the sky's part alone
+std::shared_ptr<const WaterLight> shadow(const Surface& surface, const Environment& environment, const Ground& ground,
+                                         const Material& material, const Bounds& region, bool sun_too) {
   Bounds bounds = surface.bounds();
   if (!region.empty() && !bounds.empty()) {
     const Bounds common{glm::max(bounds.low, region.low), glm::min(bounds.high, region.high)};
@@ -100,7 +98,7 @@ std::shared_ptr<const WaterLight> soft_shadow(const Surface& surface, const Envi
   const bool sun_shines = glm::dot(sun, ground.up) > 0.05f;
   if (!sun_shines) sun = ground.up;
   float extent = 0;
-  const View view = view_from_sun(bounds, sun, ground.up, extent);
+  const View view = view_from_sun(bounds, sun, ground.up, sun_too ? kTexels : kSkyTexels, extent);
   const float texel = view.pixel_size(0.0f), texels = extent / texel;
   const Image<float> thickness = surface.thickness(view);
 
@@ -125,9 +123,11 @@ std::shared_ptr<const WaterLight> soft_shadow(const Surface& surface, const Envi
       skylight[i] = left;
     }
   }
-  blur(smooth, std::max(1.0f, kSlopeBlur * texels));
-  if (material.transparent) sunlight = gathered(sunlight, smooth, texel, material.ior);
-  blur(sunlight, std::max(1.0f, kPenumbra * texels));
+  if (sun_too) {
+    blur(smooth, std::max(1.0f, kSlopeBlur * texels));
+    if (material.transparent) sunlight = gathered(sunlight, smooth, texel, material.ior);
+    blur(sunlight, std::max(1.0f, kPenumbra * texels));
+  }
   blur(cover, kSkyBlur * texels);
   blur(skylight, kSkyBlur * texels);
 
@@ -139,13 +139,28 @@ std::shared_ptr<const WaterLight> soft_shadow(const Surface& surface, const Envi
     for (int x = 0; x < map.width(); ++x) {
       const int inwards = std::min(std::min(x, map.width() - 1 - x), std::min(y, map.height() - 1 - y));
       const float presence = std::clamp(static_cast<float>(inwards) / border, 0.0f, 1.0f);
-      const vec3 sun_part = sun_shines ? glm::clamp(sunlight(x, y), vec3{0.0f}, vec3{kBrightest}) : vec3{1.0f};
+      const vec3 sun_part =
+          sun_shines && sun_too ? glm::clamp(sunlight(x, y), vec3{0.0f}, vec3{kBrightest}) : vec3{1.0f};
       // Sky light comes from all around: even beside black ink most of it arrives, and some under it.
       const vec3 held_back = glm::mix(vec3{kMostSkyTaken}, vec3{sky_taken}, skylight(x, y));
       const vec3 sky_part = glm::clamp(1.0f - held_back * cover(x, y), vec3{0.0f}, vec3{1.0f});
       map(x, y) = {glm::mix(vec3{1.0f}, sun_part, presence), glm::mix(vec3{1.0f}, sky_part, presence)};
     }
   return std::make_shared<LightMap>(view, std::move(map));
+}
+
+}  // namespace
+
+std::shared_ptr<const WaterLight> soft_shadow(const Surface& surface, const Environment& environment,
+                                              const Ground& ground, const Material& material, StageTimes* times,
+                                              const Bounds& region) {
+  const StageTimer timer(times, "shadow");
+  return shadow(surface, environment, ground, material, region, true);
+}
+
+std::shared_ptr<const WaterLight> sky_shadow(const Surface& surface, const Environment& environment,
+                                             const Ground& ground, const Material& material, const Bounds& region) {
+  return shadow(surface, environment, ground, material, region, false);
 }
 
 }  // namespace meniscus

@@ -1,0 +1,73 @@
+#include "shading/caustics_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace meniscus {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+CausticsMap::CausticsMap(const View& view, Image<vec3> power, SceneMap solids)
+    : view_(view), texels_(std::move(power)), solids_(std::move(solids)) {
+  const float pixel = view.pixel_size(0.0f), per_area = 1.0f / (pixel * pixel);
+  for (vec3& texel : texels_) texel *= per_area;
+}
+
+vec3 CausticsMap::irradiance(vec3 point, vec3 normal) const {
+  const float cosine = facing(normal);
+  if (!(cosine > 0)) return vec3{0.0f};
+  const vec3 at = view_.project(point);
+  const float x = at.x - 0.5f, y = at.y - 0.5f;
+  if (!(x > -1.0f && y > -1.0f && x < static_cast<float>(view_.width) && y < static_cast<float>(view_.height)))
+    return vec3{0.0f};
+  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+  const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
+  const auto texel = [&](int u, int v) {
+    return u >= 0 && v >= 0 && u < view_.width && v < view_.height ? texels_(u, v) : vec3{0.0f};
+  };
+  const vec3 light = (1.0f - t) * ((1.0f - s) * texel(i, j) + s * texel(i + 1, j)) +
+                     t * ((1.0f - s) * texel(i, j + 1) + s * texel(i + 1, j + 1));
+  if (light == vec3{0.0f} || solids_.hides(point, normal)) return vec3{0.0f};
+  return cosine * light;
+}
+
+float UnbentLight::fraction(vec3 point) const {
+  const vec3 at = view_.project(point);
+  if (!(at.z > 0)) return 1.0f;
+  const float x = at.x - 0.5f, y = at.y - 0.5f;
+  if (!(x >= 0 && y >= 0 && x < static_cast<float>(depth_.width() - 1) && y < static_cast<float>(depth_.height() - 1)))
+    return 1.0f;
+  const float distance = view_.projection == Projection::perspective ? glm::length(point - view_.eye) : at.z;
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
+  // Nearer to the water than a part of a pixel counts as on it.
+  const float least = distance - 0.25f * view_.pixel_size(distance);
+  const auto free = [&](int u, int v) { return depth_(u, v) < least ? 0.0f : 1.0f; };
+  return (1.0f - t) * ((1.0f - s) * free(i, j) + s * free(i + 1, j)) +
+         t * ((1.0f - s) * free(i, j + 1) + s * free(i + 1, j + 1));
+}
+
+vec3 LightCast::refracted(vec3 point, vec3 normal) const {
+  const CausticsMap* best = nullptr;
+  float cosine = 0;
+  for (const CausticsMap& map : maps)
+    if (map.facing(normal) > cosine + (best ? 0.2f : 0.0f)) {
+      cosine = map.facing(normal);
+      best = &map;
+    }
+  return best ? best->irradiance(point, normal) : vec3{0.0f};
+}
+
+Bounds casting_box(const Surface& surface, const Bounds& region) {
+  const Bounds bounds = surface.bounds();
+  if (region.empty() || bounds.empty()) return bounds;
+  const Bounds common{glm::max(bounds.low, region.low), glm::min(bounds.high, region.high)};
+  return common.empty() ? bounds : common;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,67 @@
+/// The light that one source casts through the water, as maps.
+#pragma once
+
+#include "shading/caustics_triangles.h"
+
+namespace meniscus {
+
+/// Irradiance across the direction of an orthographic view, on what that view sees.
+class CausticsMap {
+ public:
+  /// @param power   of each texel of `view`, W
+  /// @param solids  along the same direction
+  CausticsMap(const View& view, Image<vec3> power, SceneMap solids);
+
+  /// Irradiance on a surface; zero where the view does not see it.
+  vec3 irradiance(vec3 point, vec3 normal) const;
+  /// Cosine at which the view sees a surface.
+  float facing(vec3 normal) const { return -glm::dot(normal, view_.forward); }
+
+  const View& view() const { return view_; }
+  const SceneMap& solids() const { return solids_; }
+  /// W/m^2 across the view's direction.
+  const Image<vec3>& texels() const { return texels_; }
+  Image<vec3>& texels() { return texels_; }
+
+ private:
+  View view_;
+  Image<vec3> texels_;
+  SceneMap solids_;
+};
+
+/// Where the light of one source arrives unbent: not behind points of the water that its caustics are drawn from.
+class UnbentLight {
+ public:
+  /// @param view   from the light
+  /// @param depth  of the water along the view, m; +infinity: none
+  UnbentLight(const View& view, Image<float> depth) : view_(view), depth_(std::move(depth)) {}
+  /// The fraction that arrives, [0, 1].
+  float fraction(vec3 point) const;
+
+ private:
+  View view_;
+  Image<float> depth_;
+};
+
+/// All that one light casts, with what it was made from.
+struct LightCast {
+  LightSource light;
+  VirtualScreen screen;
+  Image<Landing> landings;          ///< empty unless they were asked for
+  std::vector<CausticsMap> maps;    ///< the first along the light in flat water, others along the horizon
+  std::vector<UnbentLight> unbent;  ///< one
+  LightBalance balance;             ///< of the first map
+
+  /// Irradiance of bent light.
+  vec3 refracted(vec3 point, vec3 normal) const;
+};
+
+/// @param keep  keep screen and landings
+LightCast cast_light(const Surface& surface, const LightSource& light, const Bounds& box, const Scene& scene,
+                     const Material& material, const CausticsOptions& options, StageTimes* times = nullptr,
+                     bool keep = false);
+
+/// The water that casts: what of it is in the region, or all of it.
+Bounds casting_box(const Surface& surface, const Bounds& region);
+
+}  // namespace meniscus

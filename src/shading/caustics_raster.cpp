@@ -1,0 +1,214 @@
+#include "shading/caustics_raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace meniscus {
+namespace {
+
+/// Rows that one piece of work fills.
+constexpr int kBandRows = 16;
+/// Polygons of a smaller area, texels^2, are drawn as lines: their covered areas would be noise of rounding.
+constexpr double kSliver = 1e-5;
+
+/// Adds to one row: coverage as differences along x, so that the prefix sum is the covered area of each texel.
+class Row {
+ public:
+  explicit Row(int width) : difference_(static_cast<std::size_t>(width) + 2) {}
+
+  void clear(int first, int last) {
+    std::fill(difference_.begin() + first, difference_.begin() + std::min<int>(last + 3, size()), 0.0);
+    first_ = first;
+    last_ = last;
+  }
+
+  /// The area to the right of a piece of an edge within the row. x0, x1 in [0, width]; dy signed.
+  void add(double x0, double x1, double dy) {
+    const double left = std::min(x0, x1), right = std::max(x0, x1);
+    const int i0 = std::clamp(static_cast<int>(left), first_, last_);
+    const int i1 = std::clamp(static_cast<int>(std::ceil(right)) - 1, i0, last_);
+    if (i1 == i0) {
+      const double middle = std::clamp(0.5 * (left + right) - i0, 0.0, 1.0);
+      at(i0) += dy * (1.0 - middle);
+      at(i0 + 1) += dy * middle;
+      return;
+    }
+    // Covered area of column i by the edge's height profile: the integral of a ramp.
+    const double slope = dy / (right - left);
+    double before = 0;  // area that is already in the prefix sum
+    for (int i = i0; i <= i1; ++i) {
+      const double a = std::max(left, static_cast<double>(i)), b = std::min(right, i + 1.0);
+      const double risen = slope * (a - left), rising = slope * (b - a);
+      const double area = risen * (b - a) + 0.5 * rising * (b - a) + (risen + rising) * (i + 1.0 - b);
+      at(i) += area - before;
+      before = area;
+    }
+    at(i1 + 1) += dy - before;
+  }
+
+  void pour(vec3* texels, double scale, vec3 flux) const {
+    double sum = 0;
+    for (int i = first_; i <= last_; ++i) {
+      sum += difference_[static_cast<std::size_t>(i)];
+      texels[i] += static_cast<float>(std::abs(sum) * scale) * flux;
+    }
+  }
+
+ private:
+  int size() const { return static_cast<int>(difference_.size()); }
+  double& at(int i) { return difference_[static_cast<std::size_t>(i)]; }
+  std::vector<double> difference_;
+  int first_ = 0, last_ = 0;
+};
+
+struct Polygon {
+  vec2 corner[10];
+  int corners = 0;
+};
+
+/// The part of the polygon where sign * (p[axis] - bound) >= 0.
+Polygon clipped(const Polygon& polygon, int axis, float bound, float sign) {
+  Polygon result;
+  for (int i = 0; i < polygon.corners; ++i) {
+    const vec2 a = polygon.corner[i], b = polygon.corner[(i + 1) % polygon.corners];
+    const float da = sign * (a[axis] - bound), db = sign * (b[axis] - bound);
+    if (da >= 0 && result.corners < 10) result.corner[result.corners++] = a;
+    if ((da >= 0) != (db >= 0) && result.corners < 10) {
+      vec2 cut = a + (da / (da - db)) * (b - a);
+      cut[axis] = bound;
+      result.corner[result.corners++] = cut;
+    }
+  }
+  return result;
+}
+
+double area_of(const Polygon& polygon) {
+  double doubled = 0;
+  for (int i = 1; i + 1 < polygon.corners; ++i) {
+    const glm::dvec2 u = glm::dvec2(polygon.corner[i]) - glm::dvec2(polygon.corner[0]);
+    const glm::dvec2 v = glm::dvec2(polygon.corner[i + 1]) - glm::dvec2(polygon.corner[0]);
+    doubled += u.x * v.y - u.y * v.x;
+  }
+  return 0.5 * std::abs(doubled);
+}
+
+/// A polygon of no area: its flux along its longest side, in points between texel centres.
+void draw_line(const LightPolygon& polygon, Image<vec3>& image, int top, int bottom) {
+  vec2 a = polygon.corner[0], b = a;
+  float longest = -1;
+  for (int i = 0; i < polygon.corners; ++i)
+    for (int j = i + 1; j < polygon.corners; ++j)
+      if (const vec2 side = polygon.corner[j] - polygon.corner[i]; glm::dot(side, side) > longest) {
+        longest = glm::dot(side, side);
+        a = polygon.corner[i];
+        b = polygon.corner[j];
+      }
+  const int points = std::min(1 << 14, 1 + static_cast<int>(2.0f * std::sqrt(longest)));
+  const vec3 share = polygon.flux / static_cast<float>(points);
+  for (int k = 0; k < points; ++k) {
+    const vec2 p = a + (static_cast<float>(k) + 0.5f) / static_cast<float>(points) * (b - a);
+    // A square of one texel around the point.
+    const vec2 corner = p - 0.5f, base = glm::floor(corner), part = corner - base;
+    for (int n = 0; n < 4; ++n) {
+      const float x = base.x + static_cast<float>(n & 1), y = base.y + static_cast<float>(n >> 1);
+      if (!(x >= 0 && x < static_cast<float>(image.width()) && y >= static_cast<float>(top) &&
+            y < static_cast<float>(bottom)))
+        continue;
+      image(static_cast<int>(x), static_cast<int>(y)) +=
+          share * (n & 1 ? part.x : 1.0f - part.x) * (n >> 1 ? part.y : 1.0f - part.y);
+    }
+  }
+}
+
+void draw(const LightPolygon& light, Image<vec3>& image, int top, int bottom, Row& row) {
+  Polygon polygon;
+  polygon.corners = light.corners;
+  std::copy(light.corner, light.corner + light.corners, polygon.corner);
+  const double whole = area_of(polygon);
+  if (!(whole > kSliver)) {
+    draw_line(light, image, top, bottom);
+    return;
+  }
+  vec2 low = polygon.corner[0], high = low;
+  for (int i = 1; i < polygon.corners; ++i) {
+    low = glm::min(low, polygon.corner[i]);
+    high = glm::max(high, polygon.corner[i]);
+  }
+  const float width = static_cast<float>(image.width());
+  if (low.x < 0) polygon = clipped(polygon, 0, 0.0f, 1.0f);
+  if (high.x > width) polygon = clipped(polygon, 0, width, -1.0f);
+  if (polygon.corners < 3) return;
+  low.x = std::clamp(low.x, 0.0f, width);
+  high.x = std::clamp(high.x, 0.0f, width);
+  const int first = std::min(static_cast<int>(low.x), image.width() - 1);
+  const int last = std::clamp(static_cast<int>(std::ceil(high.x)) - 1, first, image.width() - 1);
+  const int y0 = std::max(top, static_cast<int>(std::floor(low.y)));
+  const int y1 = std::min(bottom, static_cast<int>(std::ceil(high.y)));
+  for (int y = y0; y < y1; ++y) {
+    row.clear(first, last);
+    for (int i = 0; i < polygon.corners; ++i) {
+      const vec2 a = polygon.corner[i], b = polygon.corner[i + 1 < polygon.corners ? i + 1 : 0];
+      const bool down = a.y < b.y;
+      const vec2 upper = down ? a : b, lower = down ? b : a;
+      const double from = std::max<double>(upper.y, y), to = std::min<double>(lower.y, y + 1.0);
+      if (!(from < to)) continue;
+      const double slope = (static_cast<double>(lower.x) - upper.x) / (static_cast<double>(lower.y) - upper.y);
+      const auto x_at = [&](double at) {
+        return std::clamp(upper.x + slope * (at - upper.y), static_cast<double>(low.x), static_cast<double>(high.x));
+      };
+      row.add(x_at(from), x_at(to), down ? to - from : from - to);
+    }
+    row.pour(image.row(y), 1.0 / whole, light.flux);
+  }
+}
+
+}  // namespace
+
+float doubled_area(const LightPolygon& polygon) {
+  float doubled = 0;
+  for (int i = 1; i + 1 < polygon.corners; ++i) {
+    const vec2 u = polygon.corner[i] - polygon.corner[0], v = polygon.corner[i + 1] - polygon.corner[0];
+    doubled += u.x * v.y - u.y * v.x;
+  }
+  return doubled;
+}
+
+void draw_polygons(const std::vector<std::vector<LightPolygon>>& lists, Image<vec3>& image) {
+  if (image.empty()) return;
+  const std::size_t bands = static_cast<std::size_t>((image.height() + kBandRows - 1) / kBandRows);
+  // Which polygons touch which band, list by list and in their order.
+  std::vector<std::vector<std::uint32_t>> touching(lists.size() * bands);
+  parallel_for(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t l = begin; l < end; ++l)
+      for (std::size_t p = 0; p < lists[l].size(); ++p) {
+        const LightPolygon& polygon = lists[l][p];
+        vec2 low = polygon.corner[0], high = low;
+        for (int i = 1; i < polygon.corners; ++i) {
+          low = glm::min(low, polygon.corner[i]);
+          high = glm::max(high, polygon.corner[i]);
+        }
+        // One texel more: lines are that wide. Corners that are not numbers fail all comparisons.
+        if (!(low.y - 1.0f < static_cast<float>(image.height()) && high.y + 1.0f > 0 && high.x + 1.0f > 0 &&
+              low.x - 1.0f < static_cast<float>(image.width()) && glm::dot(polygon.flux, vec3{1.0f}) > 0))
+          continue;
+        const int first = std::max(0, static_cast<int>(std::max(low.y - 1.0f, 0.0f))) / kBandRows;
+        const int last = std::min(image.height() - 1,
+                                  static_cast<int>(std::min(high.y + 1.0f, static_cast<float>(image.height())))) /
+                         kBandRows;
+        for (int band = first; band <= last; ++band)
+          touching[l * bands + static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(p));
+      }
+  });
+  parallel_for(bands, 1, [&](std::size_t begin, std::size_t end) {
+    Row row(image.width());
+    for (std::size_t band = begin; band < end; ++band) {
+      const int top = static_cast<int>(band) * kBandRows, bottom = std::min(top + kBandRows, image.height());
+      for (std::size_t l = 0; l < lists.size(); ++l)
+        for (const std::uint32_t p : touching[l * bands + band]) draw(lists[l][p], image, top, bottom, row);
+    }
+  });
+}
+
+}  // namespace meniscus
