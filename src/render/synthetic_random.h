@@ -5,7 +5,7 @@
 
 namespace meniscus {
 
-/// Independent of libraries, so that a scene is the same everywhere [Steele2014, SplitMix64].
+/// Independent of libraries, so that a scene is the same everywhere: SplitMix64.               [Steele2014]
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
