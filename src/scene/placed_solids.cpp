@@ -1,6 +1,8 @@
 #include "scene/placed_solids.h"
 
+#include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -48,6 +50,19 @@ RTCRayHit traced(RTCScene scene, const Ray& ray, float from, float limit) {
   return r;
 }
 
+/// Whether a ray meets a box between two distances.
+bool meets(const Bounds& box, const Ray& ray, float from, float limit) {
+  float enter = from, leave = limit;
+  for (int axis = 0; axis < 3; ++axis) {
+    // A ray along a face gives infinities that leave enter and leave as they are, or none of both on the outside.
+    const float inverse = 1.0f / ray.direction[axis];
+    const float a = (box.low[axis] - ray.origin[axis]) * inverse, b = (box.high[axis] - ray.origin[axis]) * inverse;
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return enter <= leave;
+}
+
 /// The normal, turned no farther than needed to face the ray's origin.
 vec3 facing(vec3 normal, vec3 direction) {
   constexpr float kLeast = 1e-3f;
@@ -83,25 +98,62 @@ PlacedSolids::PlacedSolids(std::vector<PlacedSolid> placed) : scene_(make_embree
   }
   rtcCommitScene(scene_.get());
   check_embree();
+  const vec3 size = glm::max(glm::abs(bounds_.low), glm::abs(bounds_.high));
+  grown_ = bounds_.grown(1e-5f * std::max({size.x, size.y, size.z}));
 }
 
 SolidHit PlacedSolids::hit(const Ray& ray, Beam beam, float from, float limit) const {
+  if (!meets(grown_, ray, from, limit)) return {};
   const RTCRayHit found = traced(scene_.get(), ray, from, limit);
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   return described(ray, beam, found.ray.tfar, found.hit.instID[0], found.hit.primID, found.hit.u, found.hit.v);
 }
 
 float PlacedSolids::distance(const Ray& ray, float from, float limit) const {
+  if (!meets(grown_, ray, from, limit)) return kInfinity;
   const RTCRayHit found = traced(scene_.get(), ray, from, limit);
   return found.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity : found.ray.tfar;
 }
 
 bool PlacedSolids::blocks(const Ray& ray, float from, float limit) const {
+  if (!meets(grown_, ray, from, limit)) return false;
   RTCRay r = embree_ray(ray, from, limit);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene_.get(), &context, &r);
   return r.tfar < 0;
+}
+
+int PlacedSolids::passing(const Ray (&rays)[4]) const {
+  RTCRay4 r;
+  alignas(16) const int valid[4] = {-1, -1, -1, -1};
+  for (int k = 0; k < 4; ++k) {
+    r.org_x[k] = rays[k].origin.x;
+    r.org_y[k] = rays[k].origin.y;
+    r.org_z[k] = rays[k].origin.z;
+    r.dir_x[k] = rays[k].direction.x;
+    r.dir_y[k] = rays[k].direction.y;
+    r.dir_z[k] = rays[k].direction.z;
+    r.tnear[k] = 0;
+    r.tfar[k] = kInfinity;
+    r.time[k] = 0;
+    r.mask[k] = 0xFFFFFFFFu;
+    r.id[k] = 0;
+    r.flags[k] = 0;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded4(valid, scene_.get(), &context, &r);
+  int bits = 0;
+  for (int k = 0; k < 4; ++k) bits |= r.tfar[k] < 0 ? 0 : 1 << k;
+  return bits;
+}
+
+bool PlacedSolids::near(const Ray& ray, float width, float spread) const {
+  // Nothing of the box is farther than its centre and half of its diagonal.
+  const float farthest = glm::length(grown_.centre() - ray.origin) + 0.5f * glm::length(grown_.extent());
+  return meets(grown_.grown(width + spread * farthest), ray, 0, kInfinity);
 }
 
 SolidHit PlacedSolids::described(const Ray& ray, Beam beam, float distance, std::size_t place, std::size_t triangle,

@@ -18,6 +18,10 @@ class PlacedSolids {
   float distance(const Ray& ray, float from, float limit) const;
   /// Whether there is any.
   bool blocks(const Ray& ray, float from, float limit) const;
+  /// Bits of four rays that meet none, the first ray's the lowest; the rays have no end.
+  int passing(const Ray (&rays)[4]) const;
+  /// Whether rays beside this one, as far as width + spread * their length, may meet any.
+  bool near(const Ray& ray, float width, float spread) const;
 
  private:
   struct Place {
@@ -33,6 +37,7 @@ class PlacedSolids {
   std::vector<Place> places_;
   EmbreeScene scene_;
   Bounds bounds_;
+  Bounds grown_;  ///< by more than rounding
 };
 
 }  // namespace meniscus

@@ -19,8 +19,11 @@ Scene::Scene(Environment environment, Ground ground) {
     throw Error(ErrorCode::invalid_argument, "the ground's up direction has no length");
   ground.up /= length;
   const UpFrame frame = up_frame(ground.up);
-  parts_ =
-      std::make_shared<Parts>(Parts{std::move(environment), ground, {}, {}, {}, {}, {}, frame.east, frame.north, 0.0f});
+  auto parts = std::make_shared<Parts>(Parts{.environment = std::move(environment), .ground = ground});
+  parts->u_axis = frame.east;
+  parts->v_axis = frame.north;
+  parts->aim_at_sun();
+  parts_ = std::move(parts);
 }
 
 void Scene::set_water_light(std::shared_ptr<const WaterLight> light) {

@@ -1,6 +1,7 @@
 // Light on solids and what leaves them.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -53,6 +54,15 @@ constexpr std::array<vec2, 16> kDisc{{{0.92f, 0.38f},
 
 }  // namespace
 
+void Scene::Parts::aim_at_sun() {
+  const vec3 sun = environment.sun_direction();
+  const UpFrame frame = up_frame(sun);
+  for (std::size_t i = 0; i < kDisc.size(); ++i) {
+    sun_offsets[i] = kDisc[i].x * frame.east + kDisc[i].y * frame.north;
+    sun_points[i] = glm::normalize(sun + kSunRadius * sun_offsets[i]);
+  }
+}
+
 vec3 Scene::Parts::sun_seen(vec3 point, vec3 face_normal, float footprint) const {
   const vec3 sun = environment.sun_direction();
   const float away = clearance(point);
@@ -61,20 +71,21 @@ vec3 Scene::Parts::sun_seen(vec3 point, vec3 face_normal, float footprint) const
   if (body) light = body->light_transmittance({start, sun}, kInfinity);
   if (!solids) return light;
   // A cone around the sun that starts as wide as what is averaged: four rays on its edge, more where they disagree.
-  const UpFrame frame = up_frame(sun);
+  if (!solids->near({start, sun}, footprint, 2.0f * kSunRadius)) return light;
   int seen = 0;
-  const auto ray_seen = [&](std::size_t i) {
-    const vec3 offset = kDisc[i].x * frame.east + kDisc[i].y * frame.north;
-    // Starting points stay in the face, where they do not fall under it.
-    vec3 beside = (0.5f * footprint) * offset;
-    beside -= glm::dot(beside, face_normal) * face_normal;
-    return !solids->blocks({start + beside, glm::normalize(sun + kSunRadius * offset)}, 0, kInfinity);
-  };
-  for (std::size_t i = 0; i < 4; ++i) seen += ray_seen(i) ? 1 : 0;
-  if (seen == 0) return vec3{0.0f};
-  if (seen == 4) return light;
-  for (std::size_t i = 4; i < kDisc.size(); ++i) seen += ray_seen(i) ? 1 : 0;
-  return light * (static_cast<float>(seen) / static_cast<float>(kDisc.size()));
+  for (std::size_t first = 0; first < sun_points.size(); first += 4) {
+    Ray rays[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      // Starting points stay in the face, where they do not fall under it.
+      vec3 beside = (0.5f * footprint) * sun_offsets[first + k];
+      beside -= glm::dot(beside, face_normal) * face_normal;
+      rays[k] = {start + beside, sun_points[first + k]};
+    }
+    seen += std::popcount(static_cast<unsigned>(solids->passing(rays)));
+    if (first == 0 && seen == 0) return vec3{0.0f};
+    if (first == 0 && seen == 4) return light;
+  }
+  return light * (static_cast<float>(seen) / static_cast<float>(sun_points.size()));
 }
 
 vec3 Scene::Parts::irradiance(vec3 point, vec3 normal, vec3 face_normal, float footprint) const {

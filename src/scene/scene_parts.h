@@ -1,6 +1,8 @@
 /// Everything that a scene holds; shared by its copies, copied before it is changed.
 #pragma once
 
+#include <array>
+
 #include "meniscus/scene.h"
 #include "scene/placed_solids.h"
 #include "scene/tank_body.h"
@@ -17,7 +19,11 @@ struct Scene::Parts {
   std::shared_ptr<const TankBody> body;        ///< of the tank; null: none
   vec3 u_axis{0}, v_axis{0};                   ///< along the ground's squares
   float grain = 0;                             ///< m; see clearance()
+  /// Towards points of the sun's disc, and where these are in a disc of radius one around the sun's direction.
+  std::array<vec3, 16> sun_points{}, sun_offsets{};
 
+  /// Fills the places on the sun.
+  void aim_at_sun();
   /// Distance to the visible plane, not the haze in front of it.
   float ground_distance(const Ray& ray) const;
   /// The ground alone.

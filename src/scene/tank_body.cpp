@@ -135,8 +135,13 @@ SolidHit TankBody::tiled_hit(const Ray& ray, Beam beam, float from, float limit)
     const float distance = plane_distance(ray, up_, inside.high[up_]);
     if (distance >= from && distance <= limit && distance < hit.distance) {
       const vec3 point = ray.origin + distance * ray.direction;
-      rim = within(outside_, point, side_, 0) && within(outside_, point, other_, 0) &&
-            !(within(inside, point, side_, 0) && within(inside, point, other_, 0));
+      // A wall's rim is there for the rays for which the wall is: those that leave the tank through it.
+      for (const int axis : {side_, other_}) {
+        const int across = axis == side_ ? other_ : side_;
+        const bool low = point[axis] < inside.low[axis] && ray.direction[axis] < 0;
+        const bool high = point[axis] > inside.high[axis] && ray.direction[axis] > 0;
+        rim = rim || ((low || high) && within(outside_, point, axis, 0) && within(outside_, point, across, 0));
+      }
       if (rim) {
         hit.distance = distance;
         hit.normal = unit(up_, 1.0f);
