@@ -49,6 +49,10 @@ class Surface {
   virtual Image<float> thickness(const View& view, std::span<const vec2> points = {},
                                  StageTimes* times = nullptr) const = 0;
 
+  /// Edge of the cube of water that one particle stands for, m: the surface is not known more closely. 0: not made of
+  /// particles, or not known.
+  virtual float spacing() const { return 0; }
+
   /// Whether rays in any direction can be followed through the water, by crossings().
   virtual bool can_march() const { return false; }
 
@@ -151,6 +155,9 @@ struct Surfel {
   vec3 position;  ///< on the iso-surface, m
   vec3 normal;    ///< unit, out of the water
   float radius;   ///< m; neighbours' discs overlap, so that no gap remains
+  /// 1/m, mean curvature: 0 for a flat disc, > 0 where the water bulges. The disc is drawn as the cap of a sphere of
+  /// radius 1 / curvature, so that discs do not stick out of drops.
+  float curvature = 0;
 };
 
 struct SurfelOptions {
@@ -158,11 +165,12 @@ struct SurfelOptions {
   float smoothing_length = 0;  ///< m; 0: 2 spacings
   Kernel kernel = Kernel::wyvill;
   float iso = 0.5f;         ///< as in RaycastOptions
-  float grid_step = 0;      ///< m between points of the grid; 0: half a spacing, coarser for far-flung water
+  float grid_step = 0;      ///< m between points of the grid; 0: half a spacing
   float gap_threshold = 0;  ///< m between neighbours beyond which points are added; 0: 1.5 grid steps
   float epsilon = 0;        ///< m; discs this close in depth are blended; 0: one spacing
   bool keep_thin = true;
   bool want_thickness = true;
+  int filter_radius = 4;  ///< px; as in RaycastOptions; 0: normals of eq. 2 alone
 };
 
 /// Surfels on the iso-surface of the particles' density.                                 [Iwasaki2008] 4.3

@@ -29,35 +29,13 @@ constexpr float kBrightestGlare = 24.0f;
 
 float maximum(vec3 v) { return std::max(v.x, std::max(v.y, v.z)); }
 
-/// Light that a small volume or a diffuse surface of albedo one throws back, by sky and sun.
-/// @param wrap  0: a surface; more: light comes round into the shadow, as in a scattering medium
+}  // namespace
+
 vec3 diffuse_light(const Environment& environment, vec3 normal, float wrap) {
   const float facing_sun = (glm::dot(normal, environment.sun_direction()) + wrap) / (1.0f + wrap);
   return kPerPi * (environment.irradiance(normal) + std::max(0.0f, facing_sun) * environment.sun_irradiance());
 }
 
-vec3 soft_capped(vec3 glare) {
-  const float peak = maximum(glare);
-  return peak > 0 ? glare * (kBrightestGlare / (kBrightestGlare + peak)) : glare;
-}
-
-/// What a mirror of the sample's normal and the material's roughness shows: ground, sky and sun.
-vec3 mirror_image(const Sample& sample, vec3 point, const Scene& scene, const Material& material) {
-  const vec3 direction = glm::normalize(formulas::mirrored(sample.ray.direction, sample.normal));
-  // A mirror turns by twice the angle of its normal; roughness adds its own cone.
-  const float cone = 0.8f * material.roughness * material.roughness;
-  const float slopes = 2.0f * std::sqrt(sample.normal_variance);
-  const Beam beam{sample.beam.width + sample.beam.spread * sample.depth, sample.beam.spread + slopes + 2.0f * cone};
-  const float variance = cone * cone + 0.25f * slopes * slopes;
-  const float roughness = variance > 1e-6f ? std::sqrt(std::sqrt(variance) / 0.8f) : 0.0f;
-  vec3 image = scene.radiance({point, direction}, beam, std::min(roughness, 1.0f));
-  const Environment& environment = scene.environment();
-  if (glm::dot(sample.normal, environment.sun_direction()) > 0)
-    image += soft_capped(environment.sun_glare(direction, variance + kLeastGlareVariance));
-  return image;
-}
-
-/// Light of `behind` that is left after `path` m of the medium, with what the medium scatters into the way.
 vec3 through_medium(vec3 behind, float path, const Material& material, vec3 light) {
   const vec3 sigma_t = material.extinction + material.scattering;
   const vec3 left = formulas::beer_lambert(sigma_t, path);
@@ -66,26 +44,79 @@ vec3 through_medium(vec3 behind, float path, const Material& material, vec3 ligh
   return behind * left + material.body * light * albedo * (1.0f - left);
 }
 
-/// How far a sample belongs to the lower edge of a body that stands on the ground. The surface of a body of particles
-/// is round there, and its underside bends rays up that in truth reach the floor: the water goes on to the ground along
-/// the straight ray, and so does the look.
-struct Contact {
-  float weight = 0;    ///< 0 .. 1: undersides that lean by 10 to 25 degrees, 3 to 1 thicknesses from the ground
-  float straight = 0;  ///< m to the ground along the straight ray
-};
+vec3 glare(const Environment& environment, vec3 direction, float variance) {
+  const vec3 sun = environment.sun_glare(direction, variance + kLeastGlareVariance);
+  const float peak = maximum(sun);
+  return peak > 0 ? sun * (kBrightestGlare / (kBrightestGlare + peak)) : sun;
+}
+
+Mirror mirror_of(const Sample& sample, const Material& material) {
+  Mirror mirror;
+  mirror.ray = {sample.ray.origin + sample.depth * sample.ray.direction,
+                glm::normalize(formulas::mirrored(sample.ray.direction, sample.normal))};
+  // A mirror turns by twice the angle of its normal; roughness adds its own cone.
+  const float cone = 0.8f * material.roughness * material.roughness;
+  const float slopes = 2.0f * std::sqrt(sample.normal_variance);
+  mirror.beam = {sample.beam.width + sample.beam.spread * sample.depth, sample.beam.spread + slopes + 2.0f * cone};
+  mirror.variance = cone * cone + 0.25f * slopes * slopes;
+  mirror.roughness = mirror.variance > 1e-6f ? std::min(std::sqrt(std::sqrt(mirror.variance) / 0.8f), 1.0f) : 0.0f;
+  return mirror;
+}
+
+vec3 mirrored_sun(const Sample& sample, const Mirror& mirror, const Scene& scene) {
+  const Environment& environment = scene.environment();
+  if (!(glm::dot(sample.normal, environment.sun_direction()) > 0)) return vec3{0.0f};
+  return glare(environment, mirror.ray.direction, mirror.variance);
+}
+
+namespace {
+
+/// What a mirror of the sample's normal and the material's roughness shows: solids, sky and sun.
+vec3 mirror_image(const Sample& sample, const Scene& scene, const Material& material) {
+  const Mirror mirror = mirror_of(sample, material);
+  return scene.radiance(mirror.ray, mirror.beam, mirror.roughness) + mirrored_sun(sample, mirror, scene);
+}
+
+}  // namespace
 
 Contact contact_of(const Sample& sample, const Scene& scene) {
   Contact contact;
   const float down = -glm::dot(sample.normal, scene.ground().up);
   if (down <= 0.17f) return contact;
-  contact.straight = scene.ground_distance(sample.ray) - sample.depth;
+  contact.straight = scene.distance(sample.ray, sample.depth) - sample.depth;
   if (!(contact.straight >= 0 && contact.straight < kInfinity)) return contact;
   const float thicknesses = contact.straight / std::max(sample.thickness, 1e-20f);
   contact.weight = glm::smoothstep(0.17f, 0.42f, down) * (1.0f - glm::smoothstep(1.0f, 3.0f, thicknesses));
   return contact;
 }
 
-}  // namespace
+vec3 floor_radiance(const Sample& sample, const Contact& contact, const Scene& scene, const Material& material) {
+  const Refraction refraction = refraction_of(sample, material);
+  const vec3 floor =
+      scene.radiance({refraction.point, sample.ray.direction}, refraction.beam(sample, contact.straight));
+  return through_medium(floor, contact.straight, material, diffuse_light(scene.environment(), sample.normal, 0.5f));
+}
+
+Refraction refraction_of(const Sample& sample, const Material& material) {
+  Refraction result;
+  result.point = sample.ray.origin + sample.depth * sample.ray.direction;
+  result.cos_i = -glm::dot(sample.ray.direction, sample.normal);
+  const Interface interface = formulas::fresnel(result.cos_i, material.ior);
+  result.cos_t = interface.cos_t;
+  result.reflectance = std::min(1.0f, interface.reflectance * material.specular);
+  result.direction = formulas::refracted(sample.ray.direction, sample.normal, material.ior, interface.cos_t);
+  result.slopes = (1.0f - 1.0f / material.ior) * std::sqrt(sample.normal_variance);
+  return result;
+}
+
+float Refraction::water_path(const Sample& sample, float to_solid) const {
+  if (!(sample.thickness > 0)) return to_solid;
+  return std::min(sample.thickness * cos_i / cos_t, to_solid);
+}
+
+Beam Refraction::beam(const Sample& sample, float path) const {
+  return {sample.beam.width + sample.beam.spread * (sample.depth + path) + slopes * path, sample.beam.spread + slopes};
+}
 
 vec3 facing(vec3 normal, vec3 direction) {
   const float length = glm::dot(normal, normal);
@@ -116,16 +147,13 @@ Material tinted(const Material& material, vec3 colour) {
 
 vec3 transparent_radiance(const Sample& sample, const Scene& scene, const Material& material) {
   const vec3 direction = sample.ray.direction;
-  const vec3 point = sample.ray.origin + sample.depth * direction;
-  const float cos_i = -glm::dot(direction, sample.normal);
-  const Interface interface = formulas::fresnel(cos_i, material.ior);
-  const float reflectance = std::min(1.0f, interface.reflectance * material.specular);
+  const Refraction refraction = refraction_of(sample, material);
+  const vec3 point = refraction.point, inside = refraction.direction;
 
   // Thickness was measured along the straight ray; between two parallel faces the refracted ray takes a shorter way.
-  // Water that stands on the ground ends there.
-  const vec3 inside = formulas::refracted(direction, sample.normal, material.ior, interface.cos_t);
-  float path = sample.thickness * cos_i / interface.cos_t;
-  const float to_ground = scene.ground_distance({point, inside});
+  // Water that stands on the ground, or on something else, ends there.
+  float path = sample.thickness * refraction.cos_i / refraction.cos_t;
+  const float to_ground = scene.distance({point, inside});
   const bool on_ground = to_ground <= path;
   if (on_ground) path = to_ground;
 
@@ -135,9 +163,7 @@ vec3 transparent_radiance(const Sample& sample, const Scene& scene, const Materi
   const float back = glm::mix(kBackFromThin, kBackFromDeep,
                               glm::smoothstep(0.1f, 0.7f, maximum(material.extinction) * sample.thickness));
   const vec3 onward = glm::normalize(glm::mix(inside, direction, on_ground ? 0.0f : back));
-  const float slopes = (1.0f - 1.0f / material.ior) * std::sqrt(sample.normal_variance);
-  const Beam beam{sample.beam.width + sample.beam.spread * (sample.depth + path) + slopes * path,
-                  sample.beam.spread + slopes};
+  const Beam beam = refraction.beam(sample, path);
   const vec3 light = diffuse_light(scene.environment(), sample.normal, 0.5f);
   vec3 transmitted{0};
   const Contact contact = contact_of(sample, scene);
@@ -149,8 +175,8 @@ vec3 transparent_radiance(const Sample& sample, const Scene& scene, const Materi
     const vec3 floor = scene.radiance({point, direction}, beam);
     transmitted = glm::mix(transmitted, through_medium(floor, contact.straight, material, light), contact.weight);
   }
-  if (reflectance <= 0) return transmitted;
-  return glm::mix(transmitted, mirror_image(sample, point, scene, material), reflectance);
+  if (refraction.reflectance <= 0) return transmitted;
+  return glm::mix(transmitted, mirror_image(sample, scene, material), refraction.reflectance);
 }
 
 vec3 opaque_radiance(const Sample& sample, const Scene& scene, const Material& material) {
@@ -158,22 +184,21 @@ vec3 opaque_radiance(const Sample& sample, const Scene& scene, const Material& m
   if (!(material.specular > 0)) return diffuse;
   const float cos_i = -glm::dot(sample.ray.direction, sample.normal);
   const float reflectance = std::min(1.0f, formulas::fresnel_reflectance(cos_i, material.ior) * material.specular);
-  const vec3 point = sample.ray.origin + sample.depth * sample.ray.direction;
-  return glm::mix(diffuse, mirror_image(sample, point, scene, material), reflectance);
+  return glm::mix(diffuse, mirror_image(sample, scene, material), reflectance);
 }
 
 vec3 deep_radiance(const Ray& ray, Beam beam, const Scene& scene, const Material& material) {
   const vec3 light = diffuse_light(scene.environment(), scene.ground().up, 0.5f);
-  const float to_ground = scene.ground_distance(ray);
+  const float to_solid = scene.distance(ray);
   // An endless path through a channel that neither absorbs nor scatters shows what is behind.
-  const float path = to_ground < kInfinity ? to_ground : 1e30f;
+  const float path = to_solid < kInfinity ? to_solid : 1e30f;
   return through_medium(scene.radiance(ray, beam), path, material, light);
 }
 
 vec3 window_radiance(const Sample& sample, const Scene& scene, const Material& material) {
   const vec3 direction = sample.ray.direction;
-  // The ground may be nearer than the surface.
-  if (scene.ground_distance(sample.ray) <= sample.depth) return deep_radiance(sample.ray, sample.beam, scene, material);
+  // A solid may be nearer than the surface.
+  if (scene.distance(sample.ray) <= sample.depth) return deep_radiance(sample.ray, sample.beam, scene, material);
 
   const vec3 point = sample.ray.origin + sample.depth * direction;
   const float eta = 1.0f / material.ior;
@@ -185,8 +210,7 @@ vec3 window_radiance(const Sample& sample, const Scene& scene, const Material& m
   if (interface.reflectance < 1.0f) {
     const vec3 outside = formulas::refracted(direction, sample.normal, eta, interface.cos_t);
     vec3 sky = scene.radiance({point, outside}, beam, std::min(1.0f, material.roughness));
-    const float variance = 0.25f * sample.normal_variance + kLeastGlareVariance;
-    sky += soft_capped(scene.environment().sun_glare(outside, variance));
+    sky += glare(scene.environment(), outside, 0.25f * sample.normal_variance);
     seen = glm::mix(sky, seen, interface.reflectance);
   }
   const vec3 light = diffuse_light(scene.environment(), scene.ground().up, 0.5f);

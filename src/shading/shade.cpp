@@ -6,13 +6,15 @@
 
 #include "meniscus/shading.h"
 #include "shading/normal_variance.h"
-#include "shading/sample.h"
+#include "shading/refraction.h"
+#include "shading/trace.h"
 
 namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kGrain = 1024;
+constexpr int kTile = 32, kBlock = 4;  ///< px; kTile^2 = kGrain
 
 void require_size(const char* name, int width, int height, int expected_width, int expected_height) {
   if (width == expected_width && height == expected_height) return;
@@ -43,17 +45,171 @@ vec3 background(const Ray& ray, Beam beam, const Scene& scene) {
   const Environment& environment = scene.environment();
   if (!environment.sun_visible()) return radiance;
   const vec3 disc = environment.sun_glare(ray.direction, beam.spread * beam.spread);
-  if (disc != vec3{0.0f} && !(scene.ground_distance(ray) < kInfinity)) radiance += glm::min(disc, vec3{200.0f});
+  if (disc != vec3{0.0f} && !(scene.distance(ray) < kInfinity)) radiance += glm::min(disc, vec3{200.0f});
   return radiance;
 }
+
+/// Indices of the pixels by tiles, and within them by blocks: what comes one after another lies close together.
+std::vector<std::uint32_t> by_tiles(int width, int height) {
+  std::vector<std::uint32_t> order;
+  order.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int ty = 0; ty < height; ty += kTile)
+    for (int tx = 0; tx < width; tx += kTile)
+      for (int block = 0; block < (kTile / kBlock) * (kTile / kBlock); ++block)
+        for (int pixel = 0; pixel < kBlock * kBlock; ++pixel) {
+          const int x = tx + block % (kTile / kBlock) * kBlock + pixel % kBlock;
+          const int y = ty + block / (kTile / kBlock) * kBlock + pixel / kBlock;
+          if (x < width && y < height)
+            order.push_back(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) +
+                            static_cast<std::uint32_t>(x));
+        }
+  return order;
+}
+
+/// One picture being shaded.
+class Shading {
+ public:
+  Shading(const View& view, std::span<const vec2> points, const SurfaceBuffers& water, const Scene& scene,
+          const Material& material, const OpticsInputs& optics)
+      : view_(view),
+        points_(points),
+        water_(water),
+        scene_(scene),
+        material_(material),
+        optics_(optics),
+        variance_(view, points, water.normal),
+        picture_(points.empty() ? view.width : static_cast<int>(points.size()), points.empty() ? view.height : 1) {
+    beam_ = view.projection == Projection::perspective ? Beam{0.0f, view.pixel_size(1.0f)}
+                                                       : Beam{view.pixel_size(1.0f), 0.0f};
+    spacing_ = optics.surface ? optics.surface->spacing() : 0.0f;
+    glass_ = scene.tank().style == TankStyle::glass;
+  }
+
+  Image<vec3> run() {
+    const bool traced = optics_.options.refraction == RefractionMethod::ray_traced;
+    std::vector<std::uint32_t> order;
+    if (traced && points_.empty()) order = by_tiles(view_.width, view_.height);
+    parallel_for(picture_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      std::vector<Wet> wet;
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t i = order.empty() ? k : order[k];
+        if (const Wet pixel = background_of(i); pixel.coverage > 0) wet.push_back(pixel);
+      }
+      if (traced)
+        trace(wet);
+      else
+        for (const Wet& pixel : wet) mix_in(pixel, seen_of(pixel, material_of(pixel)));
+      if (glass_)
+        for (std::size_t k = begin; k < end; ++k) behind_glass(order.empty() ? k : order[k]);
+    });
+    return std::move(picture_);
+  }
+
+ private:
+  /// A pixel with water.
+  struct Wet {
+    std::size_t index = 0;
+    float coverage = 0;
+    Sample sample;
+  };
+
+  vec2 point_of(std::size_t i) const {
+    if (!points_.empty()) return points_[i];
+    const std::size_t width = static_cast<std::size_t>(view_.width);
+    return {static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f};
+  }
+
+  /// Puts what is seen beside the water into the picture.
+  Wet background_of(std::size_t i) {
+    Wet pixel;
+    pixel.index = i;
+    const Ray ray = view_.ray(point_of(i));
+    float depth = water_.depth[i];
+    float coverage = std::clamp(water_.coverage[i], 0.0f, 1.0f);
+    if (!(coverage > 0) || !(depth >= 0 && depth < kInfinity)) coverage = 0;
+    vec3 normal = water_.normal[i];
+    if (coverage > 0) flatten_at_walls(scene_.tank(), spacing_, ray, depth, normal);
+
+    // A solid before the water hides it; an eye in the water has its own order.
+    if (!water_.eye_in_water && coverage > 0 && scene_.distance(ray) < depth) coverage = 0;
+    if (coverage < 1.0f)
+      picture_[i] = water_.eye_in_water ? deep_radiance(ray, beam_, scene_, material_) : background(ray, beam_, scene_);
+    pixel.coverage = coverage;
+    if (!(coverage > 0)) return pixel;
+    Sample& sample = pixel.sample;
+    sample.ray = ray;
+    sample.depth = depth;
+    // From inside the surface looks away from the eye.
+    sample.normal = facing(water_.eye_in_water ? -normal : normal, ray.direction);
+    const float thickness = water_.thickness[i];
+    sample.thickness = thickness > 0 && thickness < kInfinity ? thickness : 0.0f;
+    sample.beam = beam_;
+    sample.normal_variance = variance_.at(i);
+    return pixel;
+  }
+
+  Material material_of(const Wet& pixel) const {
+    return water_.colour.empty() ? material_ : tinted(material_, water_.colour[pixel.index]);
+  }
+
+  vec3 seen_of(const Wet& pixel, const Material& material) const {
+    if (!material.transparent) return opaque_radiance(pixel.sample, scene_, material);
+    if (water_.eye_in_water) return window_radiance(pixel.sample, scene_, material);
+    if (optics_.options.refraction == RefractionMethod::image_space)
+      return image_space_radiance(pixel.sample, point_of(pixel.index), {view_, &optics_.behind->depth},
+                                  optics_.behind->radiance, optics_.options, scene_, material);
+    return transparent_radiance(pixel.sample, scene_, material);
+  }
+
+  void trace(std::span<const Wet> wet) {
+    if (!material_.transparent) {
+      for (const Wet& pixel : wet) mix_in(pixel, seen_of(pixel, material_of(pixel)));
+      return;
+    }
+    std::vector<Sample> samples;
+    std::vector<Material> materials;
+    for (const Wet& pixel : wet) {
+      samples.push_back(pixel.sample);
+      materials.push_back(material_of(pixel));
+    }
+    const TraceInputs inputs{optics_.surface, &scene_, optics_.options.bounces, water_.eye_in_water};
+    const std::vector<vec3> seen = traced_radiance(samples, materials, inputs);
+    for (std::size_t k = 0; k < wet.size(); ++k) mix_in(wet[k], seen[k]);
+  }
+
+  void mix_in(const Wet& pixel, vec3 seen) {
+    picture_[pixel.index] = glm::mix(picture_[pixel.index], seen, pixel.coverage);
+  }
+
+  /// The panes of a glass tank before what is seen.
+  void behind_glass(std::size_t i) {
+    const Ray ray = view_.ray(point_of(i));
+    float distance = scene_.distance(ray);
+    if (water_.coverage[i] > 0.5f && water_.depth[i] >= 0) distance = std::min(distance, water_.depth[i]);
+    const GlassPane pane = scene_.glass(ray, distance);
+    picture_[i] = picture_[i] * pane.transmittance + pane.added;
+  }
+
+  const View& view_;
+  std::span<const vec2> points_;
+  const SurfaceBuffers& water_;
+  const Scene& scene_;
+  const Material& material_;
+  const OpticsInputs& optics_;
+  NormalVariance variance_;
+  Image<vec3> picture_;
+  Beam beam_;
+  float spacing_ = 0;
+  bool glass_ = false;
+};
 
 }  // namespace
 
 Image<vec3> shade(const View& view, std::span<const vec2> points, const SurfaceBuffers& water, const Scene& scene,
                   const Material& material, const OpticsInputs& optics, StageTimes* times) {
-  static_cast<void>(optics);
   const StageTimer timer(times, "shade");
   require_material(material);
+  require_optics(view, optics);
   const int width = points.empty() ? view.width : static_cast<int>(points.size());
   const int height = points.empty() ? view.height : 1;
   require_size("depths", water.depth.width(), water.depth.height(), width, height);
@@ -63,47 +219,7 @@ Image<vec3> shade(const View& view, std::span<const vec2> points, const SurfaceB
   const bool coloured = !water.colour.empty();
   if (coloured) require_size("colours", water.colour.width(), water.colour.height(), width, height);
 
-  const bool perspective = view.projection == Projection::perspective;
-  const Beam beam = perspective ? Beam{0.0f, view.pixel_size(1.0f)} : Beam{view.pixel_size(1.0f), 0.0f};
-  const NormalVariance variance(view, points, water.normal);
-  Image<vec3> picture(width, height);
-  parallel_for(picture.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t row_length = static_cast<std::size_t>(width);
-      const Ray ray = view.ray(
-          points.empty() ? vec2{static_cast<float>(i % row_length) + 0.5f, static_cast<float>(i / row_length) + 0.5f}
-                         : points[i]);
-      const float depth = water.depth[i];
-      float coverage = std::clamp(water.coverage[i], 0.0f, 1.0f);
-      if (!(coverage > 0) || !(depth >= 0 && depth < kInfinity)) coverage = 0;
-
-      // Ground before the water hides it; an eye in the water has its own order.
-      if (!water.eye_in_water && coverage > 0 && scene.ground_distance(ray) < depth) coverage = 0;
-      vec3 radiance{0.0f};
-      if (coverage < 1.0f)
-        radiance = water.eye_in_water ? deep_radiance(ray, beam, scene, material) : background(ray, beam, scene);
-      if (coverage > 0) {
-        Sample sample;
-        sample.ray = ray;
-        sample.depth = depth;
-        // From inside the surface looks away from the eye.
-        sample.normal = facing(water.eye_in_water ? -water.normal[i] : water.normal[i], ray.direction);
-        const float thickness = water.thickness[i];
-        sample.thickness = thickness > 0 && thickness < kInfinity ? thickness : 0.0f;
-        sample.beam = beam;
-        sample.normal_variance = variance.at(i);
-        std::optional<Material> own;
-        if (coloured) own = tinted(material, water.colour[i]);
-        const Material& here = own ? *own : material;
-        const vec3 seen = !here.transparent    ? opaque_radiance(sample, scene, here)
-                          : water.eye_in_water ? window_radiance(sample, scene, here)
-                                               : transparent_radiance(sample, scene, here);
-        radiance = glm::mix(radiance, seen, coverage);
-      }
-      picture[i] = radiance;
-    }
-  });
-  return picture;
+  return Shading(view, points, water, scene, material, optics).run();
 }
 
 }  // namespace meniscus

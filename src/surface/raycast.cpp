@@ -155,6 +155,8 @@ class RaycastSurface final : public Surface {
     return enlarged(smoothed_thickness(coarse, std::min(spacing_px, 4.0f), s), stride, view, points);
   }
 
+  float spacing() const override { return field_.options.spacing; }
+
   bool can_march() const override { return true; }
 
   void crossings(std::span<const Ray> rays, std::span<const float> from, std::span<const float> limit,
