@@ -6,12 +6,13 @@
 #include "surface/density_tile.h"
 #include "surface/hidden_cells.h"
 #include "surface/masses.h"
+#include "surface/packet.h"
 
 namespace meniscus {
 namespace {
 
 constexpr int kPlanes = 4;
-constexpr int kStripRows = 16;  ///< of a slab, splatted by one thread while they stay in its nearest caches
+constexpr int kStripRows = 32;  ///< of a slab, splatted by one thread while they stay in its nearest caches
 
 void check(const DensityGrid& grid) {
   if (grid.nx < 2 || grid.ny < 2 || grid.nz < 2)
@@ -80,23 +81,33 @@ void splat_density(const Particles& particles, const DensityOptions& options, co
   const RaycastField field = make_density_field(particles, options, true, {}, times);
   const auto row = static_cast<std::size_t>(grid.nx), plane = row * static_cast<std::size_t>(grid.ny);
   std::vector<float> slab(plane * static_cast<std::size_t>(std::min(kPlanes, grid.nz)));
-  if (working_bytes) *working_bytes = slab.size() * sizeof(float) + bytes_of(field);
+  if (working_bytes)
+    *working_bytes = slab.size() * sizeof(float) + bytes_of(field) +
+                     static_cast<std::size_t>(thread_count()) * DensityTile::pitch_of(grid.nx) * kStripRows * kPlanes *
+                         sizeof(float);
   for (int k = 0; k < grid.nz; k += kPlanes) {
     const int planes = std::min(kPlanes, grid.nz - k);
     {
       StageTimer timer(times, "splat density");
       parallel_for(static_cast<std::size_t>(grid.ny), kStripRows, [&](std::size_t begin, std::size_t end) {
+        thread_local AlignedFloats scratch;
+        const std::size_t rows = end - begin;
         DensityTile strip;
-        strip.values = slab.data() + begin * row;
         strip.low = {grid.low.x, place(grid.low.y, grid.step.y, static_cast<int>(begin)),
                      place(grid.low.z, grid.step.z, k)};
         strip.step = grid.step;
         strip.nx = grid.nx;
         strip.ny = static_cast<int>(end - begin);
         strip.nz = planes;
-        strip.row_pitch = row;
-        strip.plane_pitch = plane;
+        strip.row_pitch = DensityTile::pitch_of(grid.nx);
+        strip.plane_pitch = strip.row_pitch * rows;
+        scratch.reserve(strip.plane_pitch * static_cast<std::size_t>(planes), 0);
+        strip.values = scratch.data();
         splat_into_tile(field, strip);
+        for (std::size_t p = 0; p < static_cast<std::size_t>(planes); ++p)
+          for (std::size_t j = 0; j < rows; ++j)
+            std::copy_n(scratch.data() + p * strip.plane_pitch + j * strip.row_pitch, row,
+                        slab.data() + p * plane + (begin + j) * row);
       });
     }
     on_slab(k, planes, {slab.data(), plane * static_cast<std::size_t>(planes)});

@@ -50,53 +50,68 @@ struct Span {
   int first, last;
 };
 
-/// One metaball: the discs in which it meets the planes of the box, row by row, the points of a row by vectors.
-/// Vectors reach past a disc's rim, where t is cut off at zero, but not past the ends of the box's rows.
+/// One vector of points in each of some planes, row after row.
+/// @param disc  1 - (z / h)^2 of each plane
+template <int kPlanes, class Kernel>
+HWY_INLINE void splat_rows(float* HWY_RESTRICT row, std::size_t row_pitch, std::size_t plane_pitch, int rows, float dy,
+                           float step_y, const float* disc, Vec x2, const Kernel kernel) {
+  const Tag d;
+  const Vec zero = hn::Zero(d);
+  const Vec t0 = hn::Sub(hn::Set(d, disc[0]), x2), t1 = hn::Sub(hn::Set(d, disc[kPlanes > 1 ? 1 : 0]), x2),
+            t2 = hn::Sub(hn::Set(d, disc[kPlanes > 2 ? 2 : 0]), x2),
+            t3 = hn::Sub(hn::Set(d, disc[kPlanes > 3 ? 3 : 0]), x2);
+  const auto add = [&](Vec t, Vec y2, float* HWY_RESTRICT at)
+                       HWY_ATTR { hn::StoreU(kernel.add(hn::Max(hn::Sub(t, y2), zero), hn::LoadU(d, at)), d, at); };
+  for (; rows > 0; --rows, row += row_pitch, dy += step_y) {
+    const Vec y2 = hn::Set(d, dy * dy);
+    add(t0, y2, row);
+    if (kPlanes > 1) add(t1, y2, row + plane_pitch);
+    if (kPlanes > 2) add(t2, y2, row + 2 * plane_pitch);
+    if (kPlanes > 3) add(t3, y2, row + 3 * plane_pitch);
+  }
+}
+
+/// One metaball: the discs in which it meets the planes of the box, four planes at a time, by columns as wide as a
+/// vector; one column where the ball is no wider.
 /// @param x, y, z  of the centre, in steps from the box's first point
+/// @param reach    h in steps
 template <class Kernel>
-HWY_INLINE void splat_ball(const DensityTile& tile, vec3 per_h, float x, float y, float z, const Kernel kernel) {
+HWY_INLINE void splat_ball(const DensityTile& tile, vec3 per_h, vec3 reach, float x, float y, float z,
+                           const Kernel kernel) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const Vec zero = hn::Zero(d);
-  const Span columns(x, 1.0f / per_h.x, tile.nx), planes(z, 1.0f / per_h.z, tile.nz);
-  if (columns.first > columns.last) return;
-  const int vectors = (columns.last - columns.first) / lanes + 1;
-  const int start = std::max(std::min(columns.first, tile.nx - vectors * lanes), 0);
-  const auto offset2 = [&](int column) {
-    const Vec dx = hn::Mul(hn::Add(hn::Iota(d, static_cast<float>(column) - x), zero), hn::Set(d, per_h.x));
-    return hn::Mul(dx, dx);
-  };
-  const Vec first2 = offset2(start);
-  for (int k = planes.first; k <= planes.last; ++k) {
-    const float dz = (static_cast<float>(k) - z) * per_h.z;
-    const float disc = 1.0f - dz * dz;
-    if (!(disc > 0.0f)) continue;
-    const Span rows(y, std::sqrt(disc) / per_h.y, tile.ny);
-    float* HWY_RESTRICT row = tile.values + static_cast<std::size_t>(k) * tile.plane_pitch +
-                              static_cast<std::size_t>(rows.first) * tile.row_pitch;
-    float dy = (static_cast<float>(rows.first) - y) * per_h.y;
-    if (vectors == 1 && start + lanes <= tile.nx) {
-      for (int j = rows.first; j <= rows.last; ++j, row += tile.row_pitch, dy += per_h.y) {
-        const Vec t = hn::Max(hn::Sub(hn::Set(d, disc - dy * dy), first2), zero);
-        hn::StoreU(kernel.add(t, hn::LoadU(d, row + start)), d, row + start);
-      }
-      continue;
+  const Span columns(x, reach.x, tile.nx), planes(z, reach.z, tile.nz);
+  for (int k = planes.first; k <= planes.last; k += 4) {
+    const int count = std::min(4, planes.last - k + 1);
+    float disc[4], largest = 0.0f;
+    for (int p = 0; p < count; ++p) {
+      const float dz = (static_cast<float>(k + p) - z) * per_h.z;
+      disc[p] = 1.0f - dz * dz;
+      largest = std::max(largest, disc[p]);
     }
-    for (int j = rows.first; j <= rows.last; ++j, row += tile.row_pitch, dy += per_h.y) {
-      const float left = disc - dy * dy;
-      if (!(left > 0.0f)) continue;
-      const Span inside(x, std::sqrt(left) / per_h.x, tile.nx);
-      const Vec row_t = hn::Set(d, left);
-      for (int i = inside.first; i <= inside.last; i += lanes) {
-        const Vec t = hn::Max(hn::Sub(row_t, offset2(i)), zero);
-        const int rest = tile.nx - i;
-        if (rest >= lanes) {
-          hn::StoreU(kernel.add(t, hn::LoadU(d, row + i)), d, row + i);
-        } else {
-          const auto mask = hn::FirstN(d, static_cast<std::size_t>(rest));
-          hn::BlendedStore(kernel.add(t, hn::MaskedLoad(mask, d, row + i)), mask, d, row + i);
-        }
-      }
+    for (int i = columns.first; i <= columns.last; i += lanes) {
+      // The widest disc's rows within this column.
+      const float nearest = std::max(std::max(static_cast<float>(i) - x, x - static_cast<float>(i + lanes - 1)), 0.0f);
+      const float widest = largest - nearest * nearest * per_h.x * per_h.x;
+      if (!(widest > 0.0f)) continue;
+      const Span rows(y, std::sqrt(widest) * reach.y, tile.ny);
+      const Vec dx = hn::Mul(hn::Iota(d, static_cast<float>(i) - x), hn::Set(d, per_h.x));
+      const Vec x2 = hn::Mul(dx, dx);
+      float* HWY_RESTRICT row = tile.values + static_cast<std::size_t>(k) * tile.plane_pitch +
+                                static_cast<std::size_t>(rows.first) * tile.row_pitch + i;
+      const float dy = (static_cast<float>(rows.first) - y) * per_h.y;
+      const auto splat = [&](auto planes_at_once) HWY_ATTR {
+        splat_rows<planes_at_once.value>(row, tile.row_pitch, tile.plane_pitch, rows.last - rows.first + 1, dy, per_h.y,
+                                         disc, x2, kernel);
+      };
+      if (count == 4)
+        splat(std::integral_constant<int, 4>());
+      else if (count == 3)
+        splat(std::integral_constant<int, 3>());
+      else if (count == 2)
+        splat(std::integral_constant<int, 2>());
+      else
+        splat(std::integral_constant<int, 1>());
     }
   }
 }
@@ -115,7 +130,7 @@ void splat_balls(const RaycastField& field, const DensityTile& tile) {
       if (x < -reach.x || x > last.x + reach.x || y < -reach.y || y > last.y + reach.y || z < -reach.z ||
           z > last.z + reach.z)
         continue;
-      splat_ball(tile, per_h, x, y, z, Kernel(field.mass[i] * field.scale));
+      splat_ball(tile, per_h, reach, x, y, z, Kernel(field.mass[i] * field.scale));
     }
   });
 }
