@@ -146,7 +146,7 @@ class Tracer {
     next.ray.origin = path.ray.origin + distance * direction;
     next.beam.width += path.beam.spread * distance;
     next.interfaces = path.interfaces + 1;
-    next.last_water = path.inside ? distance : path.last_water;
+    next.last_water = path.inside ? distance : 0.0f;
     if (path.inside) {
       const vec3 light = light_[path.sample];
       result_[path.sample] += path.weight * through_medium(vec3{0.0f}, distance, material, light);
@@ -184,7 +184,10 @@ class Tracer {
   /// Follows the path, or ends it where it is not worth it.
   void queue(const Path& path) {
     if (!(maximum(path.weight) > 0)) return;
-    if (path.interfaces < inputs_.bounces && (path.interfaces == 1 || maximum(path.weight) >= kLeastWeight)) {
+    // How long its way in water is must be known of a path that has just come into it.
+    const bool entered = path.inside && !(path.last_water > 0);
+    const float least = path.interfaces == 1 ? 0.0f : entered ? 0.1f * kLeastWeight : kLeastWeight;
+    if (path.interfaces < inputs_.bounces && maximum(path.weight) >= least) {
       paths_.push_back(path);
       return;
     }
