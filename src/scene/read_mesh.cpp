@@ -1,7 +1,5 @@
 // Meshes from files, by the importers of Assimp whose formats are asked for; their results are checked like a file.
-#include <assimp/config.h>
 #include <assimp/material.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -14,9 +12,12 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "meniscus/scene.h"
 #include "scene/mesh_guard.h"
+#include "scene/smooth_normals.h"
+#include "scene/triangulate.h"
 
 namespace meniscus {
 namespace {
@@ -75,8 +76,7 @@ glm::mat4 matrix_of(const aiMatrix4x4& m) {
 vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 /// Puts one mesh of the file where a node has it.
-void append(Mesh& mesh, const aiMesh& part, const glm::mat4& world, bool any_normals, bool any_texture,
-            const std::string& path) {
+void append(Mesh& mesh, const aiMesh& part, const glm::mat4& world, bool any_texture, const std::string& path) {
   if (!part.mVertices || part.mNumVertices == 0) return;
   const std::size_t first = mesh.positions.size();
   if (first + part.mNumVertices > 0xFFFFFFFEu) fail(ErrorCode::limit_exceeded, path, "the mesh has too many points");
@@ -86,54 +86,40 @@ void append(Mesh& mesh, const aiMesh& part, const glm::mat4& world, bool any_nor
   const bool mirrored = glm::determinant(linear) < 0;
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     mesh.positions.push_back(vec3(world * glm::vec4(vector_of(part.mVertices[i]), 1.0f)));
-    if (any_normals) {
-      const vec3 normal = part.mNormals ? normals * vector_of(part.mNormals[i]) : vec3{0.0f};
-      const float length = glm::length(normal);
-      mesh.normals.push_back(length > 0 && std::isfinite(length) ? normal / length : vec3{0.0f});
-    }
+    const vec3 normal = part.mNormals ? normals * vector_of(part.mNormals[i]) : vec3{0.0f};
+    const float length = glm::length(normal);
+    mesh.normals.push_back(length > 0 && std::isfinite(length) ? normal / length : vec3{0.0f});
     if (any_texture) {
       const aiVector3D at = part.mTextureCoords[0] ? part.mTextureCoords[0][i] : aiVector3D();
       mesh.texture_points.push_back({clamped(at.x, -1e6f, 1e6f, 0), clamped(at.y, -1e6f, 1e6f, 0)});
     }
   }
+  std::vector<std::uint32_t> polygon, triangles;
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
-    if (face.mNumIndices != 3) continue;  // a point or a line
-    std::uint32_t corner[3];
-    bool usable = true;
-    for (int k = 0; k < 3; ++k) {
+    if (face.mNumIndices < 3) continue;  // a point or a line
+    polygon.clear();
+    triangles.clear();
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
       if (face.mIndices[k] >= part.mNumVertices)
         fail(ErrorCode::malformed_file, path, "a triangle has a corner that is not there");
-      corner[k] = static_cast<std::uint32_t>(first) + face.mIndices[k];
-      const vec3 p = mesh.positions[corner[k]];
-      usable = usable && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+      polygon.push_back(static_cast<std::uint32_t>(first) + face.mIndices[k]);
+      const vec3 p = mesh.positions[polygon.back()];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        fail(ErrorCode::malformed_file, path, "a triangle has a corner that is not finite");
     }
-    if (!usable) fail(ErrorCode::malformed_file, path, "a triangle has a corner that is not finite");
-    // Triangles without area.
-    const vec3 a = mesh.positions[corner[0]], b = mesh.positions[corner[1]], c = mesh.positions[corner[2]];
-    if (!(glm::length(glm::cross(b - a, c - a)) > 0)) continue;
-    if (mirrored) std::swap(corner[1], corner[2]);
-    mesh.corners.insert(mesh.corners.end(), corner, corner + 3);
-    mesh.material_of.push_back(part.mMaterialIndex);
+    if (mirrored) std::reverse(polygon.begin(), polygon.end());
+    triangulate(mesh.positions, polygon, triangles);
+    if (mesh.corners.size() + triangles.size() > kMostCorners)
+      fail(ErrorCode::limit_exceeded, path, "the mesh has too many triangles");
+    for (std::size_t t = 0; t < triangles.size(); t += 3) {
+      const vec3 a = mesh.positions[triangles[t]], b = mesh.positions[triangles[t + 1]],
+                 c = mesh.positions[triangles[t + 2]];
+      if (!(glm::length(glm::cross(b - a, c - a)) > 0)) continue;  // without area
+      mesh.corners.insert(mesh.corners.end(), triangles.data() + t, triangles.data() + t + 3);
+      mesh.material_of.push_back(part.mMaterialIndex);
+    }
   }
-}
-
-/// Points that no triangle uses may be anything; they must not spoil a mesh.
-void drop_unused(Mesh& mesh) {
-  std::vector<std::uint32_t> renamed(mesh.positions.size(), 0xFFFFFFFFu);
-  for (const std::uint32_t corner : mesh.corners) renamed[corner] = 0;
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < renamed.size(); ++i) {
-    if (renamed[i] != 0) continue;
-    mesh.positions[count] = mesh.positions[i];
-    if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[i];
-    if (!mesh.texture_points.empty()) mesh.texture_points[count] = mesh.texture_points[i];
-    renamed[i] = count++;
-  }
-  mesh.positions.resize(count);
-  if (!mesh.normals.empty()) mesh.normals.resize(count);
-  if (!mesh.texture_points.empty()) mesh.texture_points.resize(count);
-  for (std::uint32_t& corner : mesh.corners) corner = renamed[corner];
 }
 
 struct Placed {
@@ -153,9 +139,8 @@ Mesh gathered(const aiScene& scene, const std::string& path) {
     mesh.pictures.emplace_back();
     if (picture.mHeight == 0 && bytes) mesh.pictures.back().assign(bytes, bytes + picture.mWidth);
   }
-  bool any_normals = false, any_texture = false;
+  bool any_texture = false;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
-    any_normals = any_normals || scene.mMeshes[i]->mNormals;
     any_texture = any_texture || scene.mMeshes[i]->mTextureCoords[0];
     if (scene.mMeshes[i]->mMaterialIndex >= std::max(1u, scene.mNumMaterials))
       fail(ErrorCode::malformed_file, path, "a part of the mesh has a material that is not there");
@@ -168,14 +153,12 @@ Mesh gathered(const aiScene& scene, const std::string& path) {
     const glm::mat4 world = placed.world * matrix_of(placed.node->mTransformation);
     for (unsigned i = 0; i < placed.node->mNumMeshes; ++i) {
       const aiMesh& part = *scene.mMeshes[placed.node->mMeshes[i]];
-      if (mesh.corners.size() + std::size_t{3} * part.mNumFaces > kMostCorners)
-        fail(ErrorCode::limit_exceeded, path, "the mesh has too many triangles");
-      append(mesh, part, world, any_normals, any_texture, path);
+      append(mesh, part, world, any_texture, path);
     }
     for (unsigned i = placed.node->mNumChildren; i > 0; --i) open.push_back({placed.node->mChildren[i - 1], world});
   }
   if (mesh.corners.empty()) fail(ErrorCode::malformed_file, path, "the mesh file holds no triangle");
-  drop_unused(mesh);
+  smooth_normals(mesh, std::cos(glm::radians(kCreaseDegrees)));
   return mesh;
 }
 
@@ -188,11 +171,8 @@ Mesh read_mesh(const std::string& path) {
     check_promises(kind, bytes, path);
   }
   Assimp::Importer importer;
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseDegrees);
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
-                                  aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure);
+  // No further steps: Assimp's own stop the program at some damaged meshes, before anything can be checked.
+  const aiScene* scene = importer.ReadFile(path, 0);
   if (!scene)
     fail(ErrorCode::malformed_file, path, "the mesh file cannot be understood", importer.GetErrorString(),
          "write the mesh again");

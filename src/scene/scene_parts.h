@@ -12,13 +12,13 @@ namespace meniscus {
 struct Scene::Parts {
   Environment environment;
   Ground ground;
-  Tank tank;
-  std::vector<PointLight> lamps;
-  std::shared_ptr<const WaterLight> water_light;
-  std::shared_ptr<const PlacedSolids> solids;  ///< null: none
-  std::shared_ptr<const TankBody> body;        ///< of the tank; null: none
-  vec3 u_axis{0}, v_axis{0};                   ///< along the ground's squares
-  float grain = 0;                             ///< m; see clearance()
+  Tank tank{};
+  std::vector<PointLight> lamps{};
+  std::shared_ptr<const WaterLight> water_light{};
+  std::shared_ptr<const PlacedSolids> solids{};  ///< null: none
+  std::shared_ptr<const TankBody> body{};        ///< of the tank; null: none
+  vec3 u_axis{0}, v_axis{0};                     ///< along the ground's squares
+  float grain = 0;                               ///< m; see clearance()
   /// Towards points of the sun's disc, and where these are in a disc of radius one around the sun's direction.
   std::array<vec3, 16> sun_points{}, sun_offsets{};
 
