@@ -12,6 +12,9 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Pixels of the picture show the same thing as a point up to this difference in depth, in pixel sizes.
 constexpr float kSameDepth = 8.0f;
+/// The mean over a beam takes this many samples along each axis at most, and is this many pixels wide at most.
+constexpr int kMostTaps = 4;
+constexpr float kWidestMean = 12.0f;
 
 void require_option(bool holds, const char* name, double value, const char* range) {
   if (!holds)
@@ -91,14 +94,28 @@ vec3 radiance_at(const GeometryMap& map, const Image<vec3>& radiance, const Imag
   return weights > 1e-3f ? sum / weights : nearest;
 }
 
+vec3 mean_radiance(const GeometryMap& map, const Image<vec3>& radiance, const ImageSpaceHit& hit, float width) {
+  const float pixels = width / map.view.pixel_size(glm::length(hit.point - map.view.eye));
+  const int taps = std::clamp(static_cast<int>(std::ceil(pixels - 0.5f)), 1, kMostTaps);
+  if (taps == 1) return radiance_at(map, radiance, hit);
+  const float step = std::min(pixels, kWidestMean) / static_cast<float>(taps);
+  vec3 sum{0.0f};
+  for (int k = 0; k < taps * taps; ++k) {
+    ImageSpaceHit tap = hit;
+    tap.picture += step * (vec2{k % taps, k / taps} - 0.5f * static_cast<float>(taps - 1));
+    sum += radiance_at(map, radiance, tap);
+  }
+  return sum / static_cast<float>(taps * taps);
+}
+
 vec3 image_space_radiance(const Sample& sample, vec2 picture_point, const GeometryMap& map, const Image<vec3>& picture,
                           const OpticsOptions& options, const Scene& scene, const Material& material) {
   const Refraction refraction = refraction_of(sample, material);
-  const auto look = [&](const Ray& ray, float& distance, vec3& seen) {
+  const auto look = [&](const Ray& ray, Beam beam, float& distance, vec3& seen) {
     const ImageSpaceHit hit = image_space_hit(map, ray, picture_point, options.threshold, options.iterations);
     if (!hit.met || !hit.in_picture) return false;
     distance = hit.distance;
-    seen = radiance_at(map, picture, hit);
+    seen = mean_radiance(map, picture, hit, beam.width + beam.spread * hit.distance);
     return true;
   };
 
@@ -107,7 +124,7 @@ vec3 image_space_radiance(const Sample& sample, vec2 picture_point, const Geomet
   if (contact.weight < 1.0f) {
     const Ray ray{refraction.point, refraction.direction};
     float to_solid = 0;
-    if (!look(ray, to_solid, transmitted)) {
+    if (!look(ray, refraction.beam(sample, 0.0f), to_solid, transmitted)) {
       to_solid = scene.distance(ray);
       transmitted = scene.radiance(ray, refraction.beam(sample, 0.0f));
     }
@@ -122,7 +139,7 @@ vec3 image_space_radiance(const Sample& sample, vec2 picture_point, const Geomet
   const Mirror mirror = mirror_of(sample, material);
   vec3 image;
   float distance = 0;
-  if (material.roughness > 0 || !look(mirror.ray, distance, image))
+  if (material.roughness > 0 || !look(mirror.ray, mirror.beam, distance, image))
     image = scene.radiance(mirror.ray, mirror.beam, mirror.roughness);
   image += mirrored_sun(sample, mirror, scene);
   return glm::mix(transmitted, image, refraction.reflectance);

@@ -13,6 +13,9 @@ void require_optics(const View& view, const OpticsInputs& optics);
 /// it which are as far from the eye, else the nearest one.
 vec3 radiance_at(const GeometryMap& map, const Image<vec3>& radiance, const ImageSpaceHit& hit);
 
+/// The mean of that over a beam `width` m wide at the hit.
+vec3 mean_radiance(const GeometryMap& map, const Image<vec3>& radiance, const ImageSpaceHit& hit, float width);
+
 /// Water seen from the air: one interface; what the refracted and the reflected ray meet is found in the picture of the
 /// scene without water, and where it is not in the picture by a ray in the scene.           [Iwasaki2008] 5.2
 /// @param picture_point  at which the sample is seen, px
