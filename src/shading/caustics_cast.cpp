@@ -136,15 +136,23 @@ void add_map(LightCast& cast, const Image<Landing>& landings, const View& whole,
              const LightSource& light, bool first) {
   View view;
   if (!fit_to(landings, whole, size, view)) return;
-  const auto lists = caustics_triangles(cast.screen, light, landings, view, solids, first ? &cast.balance : nullptr);
-  Image<vec3> power(view.width, view.height);
-  draw_polygons(lists, power);
+  const TrianglesOfView triangles =
+      caustics_triangles(cast.screen, light, landings, view, solids, first ? &cast.balance : nullptr);
+  // The sun's disc, and the facets of the triangles.
   const float texel = view.pixel_size(0.0f);
-  const float facets = kFacets * cast.screen.view.pixel_size(0.5f * glm::length(cast.screen.view.eye - whole.eye));
   const float sun = light.sun ? kSunSpread * mean_path(landings) : 0.0f;
-  static_cast<void>(facets);
-  blur(power, std::sqrt(sun * sun + 0.0f) / texel);
-  cast.maps.emplace_back(view, std::move(power), std::move(solids));
+  const float facets = kFacets * cast.spacing;
+  const float smooth = std::sqrt(sun * sun + facets * facets) / texel;
+  if (first) cast.smooth_px = smooth;
+  const auto drawn = [&](const PolygonLists& lists) {
+    Image<vec3> power(view.width, view.height);
+    draw_polygons(lists, power);
+    blur(power, smooth);
+    return power;
+  };
+  Image<vec3> seen = drawn(triangles.seen);
+  cast.maps.emplace_back(view, std::move(seen), triangles.any_behind ? drawn(triangles.behind) : Image<vec3>{},
+                         std::move(solids));
 }
 
 }  // namespace
@@ -159,6 +167,8 @@ LightCast cast_light(const Surface& surface, const LightSource& light, const Bou
     cast.screen = see_screen(surface, light, box, up, options);
   }
   const vec3 to_light = light.towards(box.centre());
+  cast.spacing = cast.screen.view.pixel_size(glm::length(box.centre() - cast.screen.view.eye)) *
+                 std::sqrt(cast.screen.step.x * cast.screen.step.y);
   const float cos_i = std::max(glm::dot(to_light, up), 0.02f);
   const vec3 bent = formulas::refracted(-to_light, up, material.ior, formulas::fresnel(cos_i, material.ior).cos_t);
   const int size = options.map_size > 0 ? options.map_size : kMapSize;

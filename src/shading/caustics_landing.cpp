@@ -112,15 +112,20 @@ class Lander {
 
 }  // namespace
 
-bool SceneMap::hides(vec3 point, vec3 face) const {
+SceneMap::Hidden SceneMap::hides(vec3 point, vec3 face) const {
   const vec3 at = view.project(point);
   const float x = std::clamp(at.x - 0.5f, 0.0f, static_cast<float>(depth.width()) - 1.001f);
   const float y = std::clamp(at.y - 0.5f, 0.0f, static_cast<float>(depth.height()) - 1.001f);
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const int i1 = std::min(i + 1, depth.width() - 1), j1 = std::min(j + 1, depth.height() - 1);
-  const float seen = std::max(std::max(depth(i, j), depth(i1, j)), std::max(depth(i, j1), depth(i1, j1)));
+  const float a = depth(i, j), b = depth(i1, j), c = depth(i, j1), d = depth(i1, j1);
+  const float before = at.z - bias(face);
+  return {before > std::max({a, b, c, d}), before > std::min({a, b, c, d})};
+}
+
+float SceneMap::bias(vec3 face) const {
   const float c = std::clamp(-glm::dot(face, view.forward), 0.1f, 1.0f);
-  return at.z > seen + kBias * view.pixel_size(0.0f) * (1.0f + std::sqrt(1.0f - c * c) / c);
+  return kBias * view.pixel_size(0.0f) * (1.0f + std::sqrt(1.0f - c * c) / c);
 }
 
 SceneMap see_solids(const View& view, const Scene& scene, FunctionRef<float(const Ray&)> from) {

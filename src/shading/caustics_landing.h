@@ -11,8 +11,14 @@ struct SceneMap {
   Image<float> depth;  ///< m along the view from its plane; +infinity: nothing
   Image<vec3> normal;  ///< unit, of the flat face, towards the view; zero: nothing
 
-  /// Whether something stands before `point` (of a surface with this normal) there.
-  bool hides(vec3 point, vec3 normal) const;
+  /// Whether something stands before `point` (of a surface with this normal) there: for all of the four pixels around
+  /// it, and for any of them.
+  struct Hidden {
+    bool surely, perhaps;
+  };
+  Hidden hides(vec3 point, vec3 normal) const;
+  /// m along the view by which a surface with this normal may be farther than its pixel shows.
+  float bias(vec3 normal) const;
 };
 
 /// Looks at the solids from where the water begins: what stands above it is not in the way.

@@ -12,10 +12,19 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-CausticsMap::CausticsMap(const View& view, Image<vec3> power, SceneMap solids)
-    : view_(view), texels_(std::move(power)), solids_(std::move(solids)) {
+CausticsMap::CausticsMap(const View& view, Image<vec3> seen, Image<vec3> behind, SceneMap solids)
+    : view_(view), seen_(std::move(seen)), behind_(std::move(behind)), solids_(std::move(solids)) {
   const float pixel = view.pixel_size(0.0f), per_area = 1.0f / (pixel * pixel);
-  for (vec3& texel : texels_) texel *= per_area;
+  for (vec3& texel : seen_) texel *= per_area;
+  for (vec3& texel : behind_) texel *= per_area;
+}
+
+vec3 CausticsMap::power() const {
+  glm::dvec3 sum{0.0};
+  for (const vec3& texel : seen_) sum += glm::dvec3(texel);
+  for (const vec3& texel : behind_) sum += glm::dvec3(texel);
+  const double pixel = static_cast<double>(view_.pixel_size(0.0f));
+  return vec3(sum * pixel * pixel);
 }
 
 vec3 CausticsMap::irradiance(vec3 point, vec3 normal) const {
@@ -27,12 +36,21 @@ vec3 CausticsMap::irradiance(vec3 point, vec3 normal) const {
     return vec3{0.0f};
   const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
   const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
+  // Each texel's own layer: light of what stands before the point is not taken for its own.
+  const float before = at.z - solids_.bias(normal);
+  const float scale = view_.pixel_size(0.0f) / solids_.view.pixel_size(0.0f);
+  const vec3 origin = solids_.view.project(view_.ray({0.0f, 0.0f}).origin);
   const auto texel = [&](int u, int v) {
-    return u >= 0 && v >= 0 && u < view_.width && v < view_.height ? texels_(u, v) : vec3{0.0f};
+    if (!(u >= 0 && v >= 0 && u < view_.width && v < view_.height)) return vec3{0.0f};
+    const int x = static_cast<int>(origin.x + scale * (static_cast<float>(u) + 0.5f));
+    const int y = static_cast<int>(origin.y + scale * (static_cast<float>(v) + 0.5f));
+    const Image<float>& depth = solids_.depth;
+    const bool hidden = before > depth(std::clamp(x, 0, depth.width() - 1), std::clamp(y, 0, depth.height() - 1));
+    if (!hidden) return seen_(u, v);
+    return behind_.empty() ? vec3{0.0f} : behind_(u, v);
   };
   const vec3 light = (1.0f - t) * ((1.0f - s) * texel(i, j) + s * texel(i + 1, j)) +
                      t * ((1.0f - s) * texel(i, j + 1) + s * texel(i + 1, j + 1));
-  if (light == vec3{0.0f} || solids_.hides(point, normal)) return vec3{0.0f};
   return cosine * light;
 }
 

@@ -5,14 +5,15 @@
 
 namespace meniscus {
 
-/// Irradiance across the direction of an orthographic view, on what that view sees.
+/// Irradiance across the direction of an orthographic view, on what that view sees and on what lies behind it.
 class CausticsMap {
  public:
-  /// @param power   of each texel of `view`, W
+  /// @param seen    power on the first solid of each texel of `view`, W
+  /// @param behind  on others; may be empty
   /// @param solids  along the same direction
-  CausticsMap(const View& view, Image<vec3> power, SceneMap solids);
+  CausticsMap(const View& view, Image<vec3> seen, Image<vec3> behind, SceneMap solids);
 
-  /// Irradiance on a surface; zero where the view does not see it.
+  /// Irradiance on a surface.
   vec3 irradiance(vec3 point, vec3 normal) const;
   /// Cosine at which the view sees a surface.
   float facing(vec3 normal) const { return -glm::dot(normal, view_.forward); }
@@ -20,12 +21,13 @@ class CausticsMap {
   const View& view() const { return view_; }
   const SceneMap& solids() const { return solids_; }
   /// W/m^2 across the view's direction.
-  const Image<vec3>& texels() const { return texels_; }
-  Image<vec3>& texels() { return texels_; }
+  const Image<vec3>& texels() const { return seen_; }
+  /// Power on all texels, W.
+  vec3 power() const;
 
  private:
   View view_;
-  Image<vec3> texels_;
+  Image<vec3> seen_, behind_;
   SceneMap solids_;
 };
 
@@ -50,6 +52,8 @@ struct LightCast {
   Image<Landing> landings;          ///< empty unless they were asked for
   std::vector<CausticsMap> maps;    ///< the first along the light in flat water, others along the horizon
   std::vector<UnbentLight> unbent;  ///< one
+  float spacing = 0;                ///< m between neighbouring points of the screen, about
+  float smooth_px = 0;              ///< standard deviation of the smoothing of the first map, texels
   LightBalance balance;             ///< of the first map
 
   /// Irradiance of bent light.

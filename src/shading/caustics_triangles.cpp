@@ -13,20 +13,43 @@ constexpr int kRowsOfAList = 4;
 /// its angle with it, and the length, in distances of the screen's points, up to which nothing is asked.
 constexpr float kSteepest = 0.6f;
 constexpr float kNear = 3.0f;
+/// A shard is no longer than this many distances of the screen's points.
+constexpr float kLongest = 8.0f;
 
 double sum(vec3 v) { return static_cast<double>(v.x) + static_cast<double>(v.y) + static_cast<double>(v.z); }
+
+/// Where a landing lies for a view.
+enum class Layer : std::uint8_t { grazing = 0, seen = 1, behind = 2, both = 3 };
+Layer common(Layer a, Layer b) { return static_cast<Layer>(static_cast<int>(a) & static_cast<int>(b)); }
+
+/// Where polygons go.
+struct Output {
+  std::vector<LightPolygon>& seen;
+  std::vector<LightPolygon>& behind;
+  LightBalance& balance;
+  void draw(const LightPolygon& polygon, Layer layer) const {
+    if (common(layer, Layer::seen) != Layer::grazing) seen.push_back(polygon);
+    if (common(layer, Layer::behind) != Layer::grazing) behind.push_back(polygon);
+  }
+};
 
 /// What a point of the screen is for a map.
 struct Vertex {
   vec2 at{0.0f};  ///< in the map, px
-  bool wet = false, landed = false, drawn = false;
+  bool wet = false, landed = false;
+  Layer layer = Layer::grazing;
 };
 
 class Triangles {
  public:
   Triangles(const VirtualScreen& screen, const LightSource& light, const Image<Landing>& landings, const View& view,
-            const SceneMap& solids)
-      : screen_(screen), light_(light), landings_(landings), view_(view), vertices_(screen.width, screen.height) {
+            const SceneMap& solids, bool balanced)
+      : screen_(screen),
+        light_(light),
+        landings_(landings),
+        view_(view),
+        balanced_(balanced),
+        vertices_(screen.width, screen.height) {
     parallel_for(vertices_.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Landing& landing = landings_[i];
@@ -36,21 +59,22 @@ class Triangles {
         if (!vertex.landed) continue;
         const vec3 at = view_.project(landing.point);
         vertex.at = {at.x, at.y};
-        vertex.drawn =
-            -glm::dot(landing.normal, view_.forward) > kGrazingCosine && !solids.hides(landing.point, landing.normal);
+        if (!(-glm::dot(landing.normal, view_.forward) > kGrazingCosine)) continue;
+        const SceneMap::Hidden hidden = solids.hides(landing.point, landing.normal);
+        vertex.layer = hidden.surely ? Layer::behind : hidden.perhaps ? Layer::both : Layer::seen;
       }
     });
   }
 
   /// The two triangles of the cell whose upper left point is (x, y).
-  void add_cell(int x, int y, std::vector<LightPolygon>& list, LightBalance& balance) const {
+  void add_cell(int x, int y, const Output& out) const {
     // Alternating diagonals: no direction is preferred.
     if ((x + y) % 2 == 0) {
-      add({x, y}, {x + 1, y}, {x, y + 1}, list, balance);
-      add({x + 1, y + 1}, {x, y + 1}, {x + 1, y}, list, balance);
+      add({x, y}, {x + 1, y}, {x, y + 1}, out);
+      add({x + 1, y + 1}, {x, y + 1}, {x + 1, y}, out);
     } else {
-      add({x + 1, y}, {x + 1, y + 1}, {x, y}, list, balance);
-      add({x, y + 1}, {x, y}, {x + 1, y + 1}, list, balance);
+      add({x + 1, y}, {x + 1, y + 1}, {x, y}, out);
+      add({x, y + 1}, {x, y}, {x + 1, y + 1}, out);
     }
   }
 
@@ -80,45 +104,48 @@ class Triangles {
            std::abs(glm::dot(chord, screen_.seen.normal(q.x, q.y))) < limit;
   }
 
-  void add(Point a, Point b, Point c, std::vector<LightPolygon>& list, LightBalance& balance) const {
+  void add(Point a, Point b, Point c, const Output& out) const {
     const Vertex &va = vertex(a), &vb = vertex(b), &vc = vertex(c);
     if (!(va.wet || vb.wet || vc.wet)) return;
+    if (!balanced_ && va.layer == Layer::grazing && vb.layer == Layer::grazing && vc.layer == Layer::grazing) return;
+    const Layer layer = common(va.layer, common(vb.layer, vc.layer));
     if (va.landed && vb.landed && vc.landed && together(a, b) && together(b, c) && together(c, a) &&
-        va.drawn == vb.drawn && vb.drawn == vc.drawn) {
+        (layer != Layer::grazing || (va.layer == vb.layer && vb.layer == vc.layer))) {
       const Landing &la = landing(a), &lb = landing(b), &lc = landing(c);
       const vec3 power = arriving(la.from, lb.from, lc.from);
       const vec3 passed = (la.passed + lb.passed + lc.passed) / 3.0f;
-      account(power, passed, (entering(la) + entering(lb) + entering(lc)) / 3.0f, va.drawn, balance);
-      if (!va.drawn) return;
+      account(power, passed, (entering(la) + entering(lb) + entering(lc)) / 3.0f, layer, out.balance);
+      if (layer == Layer::grazing) return;
       LightPolygon polygon;
       polygon.corner[0] = va.at;
       polygon.corner[1] = vb.at;
       polygon.corner[2] = vc.at;
       polygon.flux = power * passed;
-      ++balance.triangles;
-      list.push_back(polygon);
+      ++out.balance.triangles;
+      out.draw(polygon, layer);
       return;
     }
-    if (va.wet) add_shard(a, b, c, list, balance);
-    if (vb.wet) add_shard(b, c, a, list, balance);
-    if (vc.wet) add_shard(c, a, b, list, balance);
+    if (va.wet) add_shard(a, b, c, out);
+    if (vb.wet) add_shard(b, c, a, out);
+    if (vc.wet) add_shard(c, a, b, out);
   }
 
   /// The third of the triangle that is nearest to `a`, as if the water and the solid went on around it as they are
   /// there.
-  void add_shard(Point a, Point b, Point c, std::vector<LightPolygon>& list, LightBalance& balance) const {
+  void add_shard(Point a, Point b, Point c, const Output& out) const {
     const Landing& here = landing(a);
     const vec3 from = here.state == LandingState::landed ? here.from : screen_.point(a.x, a.y);
     const vec3 to_b = screen_.beside(b.x, b.y, from) - from, to_c = screen_.beside(c.x, c.y, from) - from;
     const vec3 power = arriving(from, from + to_b, from + to_c) / 3.0f;
     const Vertex& v = vertex(a);
     if (!v.landed) {
-      balance.lost += sum(power * here.transmittance);
-      balance.entered += sum(power * here.transmittance);
+      out.balance.lost += sum(power * here.transmittance);
+      out.balance.entered += sum(power * here.transmittance);
       return;
     }
-    account(power, here.passed, entering(here), v.drawn, balance);
-    if (!v.drawn) return;
+    account(power, here.passed, entering(here), v.layer, out.balance);
+    if (v.layer == Layer::grazing) return;
+    const vec3 b_on_solid = continued(a, b, from + to_b), c_on_solid = continued(a, c, from + to_c);
     const auto across = [&](vec3 offset) {
       const vec3 at = view_.project(here.point + offset);
       return vec2{at.x, at.y};
@@ -126,28 +153,46 @@ class Triangles {
     LightPolygon polygon;
     polygon.corners = 4;
     polygon.corner[0] = v.at;
-    polygon.corner[1] = across(0.5f * to_b);
-    polygon.corner[2] = across((to_b + to_c) / 3.0f);
-    polygon.corner[3] = across(0.5f * to_c);
+    polygon.corner[1] = across(0.5f * b_on_solid);
+    polygon.corner[2] = across((b_on_solid + c_on_solid) / 3.0f);
+    polygon.corner[3] = across(0.5f * c_on_solid);
     polygon.flux = power * here.passed;
-    ++balance.shards;
-    list.push_back(polygon);
+    ++out.balance.shards;
+    out.draw(polygon, v.layer);
+  }
+
+  /// From the landing of `a` to where light that enters at `b` would meet the plane of the solid at `a`: by its own way
+  /// where the water goes on, else by one in parallel.
+  /// @param beside  where the water would be at `b`
+  vec3 continued(Point a, Point b, vec3 beside) const {
+    const Landing &here = landing(a), &there = landing(b);
+    const bool own = there.state == LandingState::landed && together(a, b);
+    const vec3 from = own ? there.from : beside;
+    const vec3 way = own ? there.point - there.from : here.point - here.from;
+    const float length = glm::length(way), towards = -glm::dot(way, here.normal);
+    const vec3 step = beside - here.from;
+    if (!(towards > 0.05f * length)) return step;
+    const vec3 offset = from + way * (glm::dot(from - here.point, here.normal) / towards) - here.point;
+    // Nearly along the solid it may end anywhere.
+    const float far = glm::length(offset), most = kLongest * glm::length(step);
+    return far <= most ? offset : offset * (most / far);
   }
 
   /// The part of the arriving light that enters: none in a solid's shadow.
   static float entering(const Landing& landing) { return landing.passed == vec3{0.0f} ? 0.0f : landing.transmittance; }
 
-  static void account(vec3 power, vec3 passed, float entering, bool drawn, LightBalance& balance) {
+  static void account(vec3 power, vec3 passed, float entering, Layer layer, LightBalance& balance) {
     const double in = sum(power * entering), out = sum(power * passed);
     balance.entered += in;
     balance.absorbed += in - out;
-    (drawn ? balance.drawn : balance.hidden) += out;
+    (layer == Layer::grazing ? balance.grazing : layer == Layer::behind ? balance.hidden : balance.drawn) += out;
   }
 
   const VirtualScreen& screen_;
   const LightSource& light_;
   const Image<Landing>& landings_;
   const View& view_;
+  bool balanced_;
   Image<Vertex> vertices_;
 };
 
@@ -158,27 +203,30 @@ void LightBalance::add(const LightBalance& other) {
   absorbed += other.absorbed;
   drawn += other.drawn;
   hidden += other.hidden;
+  grazing += other.grazing;
   lost += other.lost;
   triangles += other.triangles;
   shards += other.shards;
 }
 
-std::vector<std::vector<LightPolygon>> caustics_triangles(const VirtualScreen& screen, const LightSource& light,
-                                                          const Image<Landing>& landings, const View& view,
-                                                          const SceneMap& solids, LightBalance* balance) {
-  const Triangles triangles(screen, light, landings, view, solids);
+TrianglesOfView caustics_triangles(const VirtualScreen& screen, const LightSource& light,
+                                   const Image<Landing>& landings, const View& view, const SceneMap& solids,
+                                   LightBalance* balance) {
+  const Triangles triangles(screen, light, landings, view, solids, balance != nullptr);
   const int rows = std::max(0, screen.height - 1);
   const std::size_t count = static_cast<std::size_t>((rows + kRowsOfAList - 1) / kRowsOfAList);
-  std::vector<std::vector<LightPolygon>> lists(count);
+  TrianglesOfView lists{PolygonLists(count), PolygonLists(count), false};
   std::vector<LightBalance> balances(count);
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t l = begin; l < end; ++l) {
       const int y0 = static_cast<int>(l) * kRowsOfAList, y1 = std::min(rows, y0 + kRowsOfAList);
-      lists[l].reserve(static_cast<std::size_t>(2 * (y1 - y0) * screen.width));
+      lists.seen[l].reserve(static_cast<std::size_t>(2 * (y1 - y0) * screen.width));
       for (int y = y0; y < y1; ++y)
-        for (int x = 0; x + 1 < screen.width; ++x) triangles.add_cell(x, y, lists[l], balances[l]);
+        for (int x = 0; x + 1 < screen.width; ++x)
+          triangles.add_cell(x, y, {lists.seen[l], lists.behind[l], balances[l]});
     }
   });
+  for (const auto& list : lists.behind) lists.any_behind = lists.any_behind || !list.empty();
   if (balance)
     for (const LightBalance& part : balances) balance->add(part);
   return lists;
