@@ -27,6 +27,7 @@ void add_render(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_bench(CLI::App& program);
 void add_bench_raycast(CLI::App& bench);
+void add_bench_refraction(CLI::App& bench);
 void add_compare(CLI::App& program);
 
 }  // namespace meniscus::apps

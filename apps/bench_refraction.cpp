@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <iostream>
+#include <memory>
+
+#include "commands.h"
+#include "json.h"
+#include "meniscus/image.h"
+#include "meniscus/render.h"
+#include "parse.h"
+#include "shading/refraction.h"
+
+namespace meniscus::apps {
+namespace {
+
+struct RefractionArguments {
+  std::size_t particles = 100'000;
+  PictureSize size{512, 512};
+  std::uint64_t seed = 1;
+  int frames = 3;
+  int threads = 0;
+  int bounces = 8;
+  bool json = false;
+};
+
+using Clock = std::chrono::steady_clock;
+
+/// The tank's water on a chequered floor with a ball, a block and a column in it.
+Scene scene_around(const Particles& particles, float spacing) {
+  const Bounds box = particles.bounds();
+  const float floor = box.low.y - 0.5f * spacing;
+  Ground ground;
+  ground.height = floor;
+  ground.square = 0.2f;
+  ground.albedo = vec3{0.75f};
+  ground.second_albedo = vec3{0.2f};
+  Scene scene(Environment{EnvironmentOptions{}}, ground);
+  const vec3 centre = box.centre();
+  const auto placed = [](Mesh mesh, vec3 colour) {
+    PlacedSolid solid{make_solid(std::move(mesh)), glm::mat4{1.0f}, SolidMaterial{}};
+    solid.material->albedo = colour;
+    return solid;
+  };
+  std::vector<PlacedSolid> solids;
+  solids.push_back(placed(sphere_mesh({centre.x - 0.5f, floor + 0.25f, centre.z + 0.2f}, 0.25f), {0.8f, 0.25f, 0.15f}));
+  solids.push_back(
+      placed(box_mesh({centre.x + 0.2f, floor, centre.z - 0.1f}, {centre.x + 0.6f, floor + 0.3f, centre.z + 0.4f}),
+             {0.85f, 0.7f, 0.2f}));
+  solids.push_back(placed(
+      cylinder_mesh({centre.x - 0.1f, floor, centre.z - 0.5f}, {centre.x - 0.1f, floor + 0.4f, centre.z - 0.5f}, 0.12f),
+      {0.25f, 0.6f, 0.35f}));
+  scene.set_solids(std::move(solids));
+  return scene;
+}
+
+/// Where the refracted rays of the seen water meet the scene, in its picture against by ray.
+struct HitErrors {
+  std::size_t rays = 0;
+  double misses = 0;  ///< fraction that the picture does not show
+  double p90_px = 0;  ///< between both hits as seen in the picture, of the rest
+};
+
+HitErrors hit_errors(const View& view, const SurfaceBuffers& seen, const Scene& scene, const SceneBuffers& behind,
+                     const OpticsOptions& options, const Material& material) {
+  HitErrors result;
+  std::size_t misses = 0;
+  std::vector<double> errors;
+  const GeometryMap map{view, &behind.depth};
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) {
+      const vec2 pixel{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+      Sample sample;
+      sample.ray = view.ray(pixel);
+      sample.depth = seen.depth(x, y);
+      if (!std::isfinite(sample.depth) || behind.depth(x, y) < sample.depth) continue;
+      sample.normal = facing(seen.normal(x, y), sample.ray.direction);
+      const Refraction refraction = refraction_of(sample, material);
+      const Ray ray{refraction.point, refraction.direction};
+      const float exact = scene.distance(ray);
+      const ImageSpaceHit hit = image_space_hit(map, ray, pixel, options.threshold, options.iterations);
+      ++result.rays;
+      if (!hit.met || !hit.in_picture || !std::isfinite(exact)) {
+        ++misses;
+        continue;
+      }
+      const vec3 at = view.project(ray.origin + exact * ray.direction);
+      errors.push_back(glm::length(vec2{at.x, at.y} - hit.picture));
+    }
+  result.misses = static_cast<double>(misses) / static_cast<double>(std::max<std::size_t>(result.rays, 1));
+  if (!errors.empty()) {
+    const auto p90 = errors.begin() + static_cast<std::ptrdiff_t>((errors.size() - 1) * 9 / 10);
+    std::nth_element(errors.begin(), p90, errors.end());
+    result.p90_px = *p90;
+  }
+  return result;
+}
+
+Json measure(const RefractionArguments& arguments) {
+  const ThreadLimit limit(arguments.threads);
+  const Particles particles = synthetic_tank(arguments.particles, arguments.seed);
+  RaycastOptions options;
+  options.spacing = *particles.spacing;
+  const View view = fitted_view(particles.bounds().grown(options.spacing), Axis::y, {}, 0, arguments.size.width,
+                                arguments.size.height);
+  const auto surface = make_raycast_surface(particles, options);
+  const SurfaceBuffers seen = surface->see(view);
+  const Scene scene = scene_around(particles, options.spacing);
+  const Material material = material_preset("water", 1.0f);
+  const SceneBuffers behind = scene.see(view);
+  // The median time of a picture, after one that warms up; in image space with the picture of the scene.
+  const auto timed = [&](RefractionMethod method, int bounces, Image<vec3>& picture) {
+    OpticsInputs optics{{}, &behind, surface.get()};
+    optics.options.refraction = method;
+    optics.options.bounces = bounces;
+    std::vector<double> times;
+    for (int i = 0; i <= arguments.frames; ++i) {
+      const auto start = Clock::now();
+      SceneBuffers again;
+      if (method == RefractionMethod::image_space) {
+        again = scene.see(view);
+        optics.behind = &again;
+      }
+      picture = shade(view, {}, seen, scene, material, optics);
+      if (i > 0) times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    }
+    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+    return times[times.size() / 2];
+  };
+  Image<vec3> thickness, image_space, traced, single;
+  Json json;
+  json["particles"] = particles.size();
+  json["width"] = view.width;
+  json["height"] = view.height;
+  json["seed"] = arguments.seed;
+  json["threads"] = thread_count();
+  json["bounces"] = arguments.bounces;
+  json["thickness_ms"] = timed(RefractionMethod::thickness, 1, thickness);
+  json["image_space_ms"] = timed(RefractionMethod::image_space, 1, image_space);
+  json["ray_traced_ms"] = timed(RefractionMethod::ray_traced, arguments.bounces, traced);
+  json["single_interface_ms"] = timed(RefractionMethod::ray_traced, 1, single);
+  json["psnr_db"] = compare(developed(image_space, ToneOptions{}), developed(single, ToneOptions{})).psnr_db;
+  const HitErrors errors = hit_errors(view, seen, scene, behind, OpticsOptions{}, material);
+  json["refracted_rays"] = errors.rays;
+  json["hit_position_error_p90_px"] = errors.p90_px;
+  json["misses"] = errors.misses;
+  return json;
+}
+
+void print(const Json& json) {
+  std::cout << fmt::format("{} particles, {}x{} pixels, {} threads\n", json["particles"].get<std::size_t>(),
+                           json["width"].get<int>(), json["height"].get<int>(), json["threads"].get<int>());
+  for (const char* key : {"thickness_ms", "image_space_ms", "single_interface_ms", "ray_traced_ms"})
+    std::cout << fmt::format("  {:<22}{:>10.1f}\n", key, json[key].get<double>());
+  std::cout << fmt::format(
+      "  image space against rays with a single interface: {:.1f} dB; hits within {:.2f} px in 90 %; "
+      "{:.1f} % not in the picture\n",
+      json["psnr_db"].get<double>(), json["hit_position_error_p90_px"].get<double>(),
+      100 * json["misses"].get<double>());
+}
+
+}  // namespace
+
+void add_bench_refraction(CLI::App& bench) {
+  CLI::App* command = bench.add_subcommand("refraction", "What is seen through a wavy tank over solid bodies");
+  const auto arguments = std::make_shared<RefractionArguments>();
+  command->add_option("--particles", arguments->particles, "Particles in the tank (default: 100000)")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}).description(""));
+  command
+      ->add_option_function<std::string>(
+          "--size", [arguments](const std::string& text) { arguments->size = parse_size("--size", text); },
+          "Size of the picture, px (default: 512x512)")
+      ->type_name("WIDTHxHEIGHT");
+  command->add_option("--seed", arguments->seed, "Of the particles' places (default: 1)")->type_name("N");
+  command->add_option("--repeat", arguments->frames, "Pictures that the median is taken of (default: 3)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000).description(""));
+  command->add_option("--threads", arguments->threads, "Threads; 0: one a core (default: 0)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024).description(""));
+  command->add_option("--bounces", arguments->bounces, "Interfaces in one path at most (default: 8)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 64).description(""));
+  command->add_flag("--json", arguments->json, "Print one JSON object");
+  command->footer(
+      "Times are those of shading alone, in image space with the picture of the scene that it looks into. psnr_db\n"
+      "compares image space with rays that know a single interface; hit_position_error_p90_px is the distance in the\n"
+      "picture between where the iteration and where a ray meet the scene; misses is the fraction of the refracted\n"
+      "rays whose hit the picture does not show.");
+  command->callback([arguments] {
+    const Json json = measure(*arguments);
+    if (arguments->json)
+      std::cout << text_of(json) << '\n';
+    else
+      print(json);
+  });
+}
+
+}  // namespace meniscus::apps
