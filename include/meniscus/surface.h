@@ -170,7 +170,10 @@ struct SurfelOptions {
   float epsilon = 0;        ///< m; discs this close in depth are blended; 0: one spacing
   bool keep_thin = true;
   bool want_thickness = true;
-  int filter_radius = 4;  ///< px; as in RaycastOptions; 0: normals of eq. 2 alone
+  /// What a surface made of surfels is shaded with: normals of [Xiao2017] at the surfels, blended by eq. 2 and filtered
+  /// in the picture. `gradient` and a filter of 0 px: the surfels' own normals, as in the paper, with all ripple.
+  NormalMethod normals = NormalMethod::blend;
+  int filter_radius = 4;  ///< px; as in RaycastOptions
 };
 
 /// Surfels on the iso-surface of the particles' density.                                 [Iwasaki2008] 4.3

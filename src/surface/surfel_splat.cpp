@@ -137,7 +137,8 @@ class Splat {
     tiles_y_ = (view.height + kTile - 1) / kTile;
   }
 
-  void run(std::span<const Surfel> surfels) {
+  void run(std::span<const Surfel> surfels, std::span<const vec3> normals) {
+    normals_ = normals;
     discs_.resize(surfels.size());
     const float margin = points_.empty() ? 0.01f : 0.51f;  // points lie anywhere in their pixels
     parallel_for(surfels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -269,7 +270,7 @@ class Splat {
       Sum& sum = sums[meeting.sample];
       sum.last = std::max(sum.last, meeting.depth * length);
       if ((meeting.depth - nearest[meeting.sample]) * length > epsilon_) continue;
-      sum.normal += meeting.weight * meeting.normal;
+      sum.normal += meeting.weight * (normals_.empty() ? meeting.normal : normals_[meeting.disc]);
       sum.depth += meeting.weight * meeting.depth * length;
       sum.weight += meeting.weight;
     }
@@ -280,9 +281,10 @@ class Splat {
       if (!(sum.weight > 0.0f) || !(size > 0.0f)) continue;
       const std::size_t target = samples.target[s];
       const vec2 place = samples.place[s];
-      const vec3 n = sum.normal * ((from_inside_ ? -1.0f : 1.0f) / size);
+      const vec3 n = sum.normal * (from_inside_ ? -1.0f : 1.0f);
       out_.depth[target] = sum.depth / sum.weight;
-      out_.normal[target] = glm::normalize(n.x * view.right + n.y * view.up + n.z * view.forward);
+      out_.normal[target] =
+          glm::normalize(normals_.empty() ? n.x * view.right + n.y * view.up + n.z * view.forward : sum.normal);
       out_.coverage[target] = 1.0f;
       out_.entry[target] = nearest[s] * (camera_.perspective ? std::sqrt(1.0f + glm::dot(place, place)) : 1.0f);
       out_.exit[target] = sum.last;
@@ -296,12 +298,13 @@ class Splat {
   SurfaceBuffers& out_;
   int tiles_x_, tiles_y_;
   std::vector<Disc> discs_;
+  std::span<const vec3> normals_;
 };
 
 }  // namespace
 
-SurfaceBuffers splat_surfels(const View& view, std::span<const Surfel> surfels, float epsilon, bool from_inside,
-                             std::span<const vec2> points) {
+SurfaceBuffers splat_surfels(const View& view, std::span<const Surfel> surfels, std::span<const vec3> normals,
+                             float epsilon, bool from_inside, std::span<const vec2> points) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   SurfaceBuffers out;
   const int width = points.empty() ? view.width : static_cast<int>(points.size()),
@@ -312,7 +315,7 @@ SurfaceBuffers splat_surfels(const View& view, std::span<const Surfel> surfels, 
   out.coverage = Image<float>(width, height, 0.0f);
   out.entry = Image<float>(width, height, kInfinity);
   out.exit = Image<float>(width, height, -kInfinity);
-  if (!surfels.empty()) Splat(view, epsilon, from_inside, points, out).run(surfels);
+  if (!surfels.empty()) Splat(view, epsilon, from_inside, points, out).run(surfels, normals);
   return out;
 }
 

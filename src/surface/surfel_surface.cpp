@@ -38,6 +38,7 @@ class SurfelSurface final : public Surface {
       : options_(resolved(given)) {
     origin_.emplace(make_density_field(particles, density_options_of(options_), true, colours, times));
     surfels_ = extract_surfels(origin_->field, options_, times);
+    if (options_.normals != NormalMethod::gradient) find_normals(times);
     bounds_ = origin_->field.grid.bounds().grown(options_.smoothing_length);
   }
 
@@ -120,10 +121,31 @@ class SurfelSurface final : public Surface {
 
   SurfaceBuffers splatted(const View& view, std::span<const vec2> points, StageTimes* times) const {
     StageTimer timer(times, "splat");
-    SurfaceBuffers seen = splat_surfels(view, surfels_, options_.epsilon, starts_inside(view), points);
+    SurfaceBuffers seen = splat_surfels(view, surfels_, normals_, options_.epsilon, starts_inside(view), points);
     if (seen.eye_in_water) std::fill(seen.entry.begin(), seen.entry.end(), 0.0f);
     show_cut(view, points, seen);
     return seen;
+  }
+
+  /// The normals of [Xiao2017] 3.3 at the surfels, sixteen neighbours at a time.
+  void find_normals(StageTimes* times) {
+    StageTimer timer(times, "normals");
+    origin_->field.options.normals = options_.normals;
+    normals_.resize(surfels_.size());
+    parallel_for((surfels_.size() + kPacket - 1) / kPacket, 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t at = begin; at < end; ++at) {
+        const std::size_t first = at * kPacket, count = std::min<std::size_t>(kPacket, surfels_.size() - first);
+        PacketPoints points, towards, found;
+        for (std::size_t l = 0; l < kPacket; ++l) {
+          const Surfel& surfel = surfels_[first + std::min(l, count - 1)];
+          points.x[l] = surfel.position.x, points.y[l] = surfel.position.y, points.z[l] = surfel.position.z;
+          towards.x[l] = surfel.normal.x, towards.y[l] = surfel.normal.y, towards.z[l] = surfel.normal.z;
+        }
+        const auto mask = static_cast<PacketMask>((1u << count) - 1u);
+        normals_packet(origin_->field, points, mask, towards, thread_list(), found);
+        for (std::size_t l = 0; l < count; ++l) normals_[first + l] = {found.x[l], found.y[l], found.z[l]};
+      }
+    });
   }
 
   /// Whether rays of this view start inside the water.
@@ -292,6 +314,7 @@ class SurfelSurface final : public Surface {
 
   SurfelOptions options_;
   std::vector<Surfel> surfels_;
+  std::vector<vec3> normals_;     ///< that are shaded, by surfel; empty: the surfels' own
   std::optional<Origin> origin_;  ///< none where surfels are all there is
   Bounds bounds_;
 };
