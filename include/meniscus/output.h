@@ -26,6 +26,12 @@ void write_exr(const std::string& path, std::span<const ExrLayer> layers);
 /// The same channels back by their full names, for tests and compare.
 std::vector<std::pair<std::string, Image<float>>> read_exr(const std::string& path);
 
+/// Points with normals and radii, such as surfels, as a binary little-endian PLY file: x, y, z, nx, ny, nz, radius of
+/// each vertex as 32-bit floats.
+/// @throws Error invalid_argument: arrays of different lengths; io_failed naming the path
+void write_point_ply(const std::string& path, std::span<const vec3> positions, std::span<const vec3> normals,
+                     std::span<const float> radii);
+
 struct VideoOptions {
   double frames_per_second = 25;
   int quality_crf = 18;  ///< constant quality, 0 best .. 51 worst
