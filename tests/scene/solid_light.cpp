@@ -99,6 +99,25 @@ TEST(SolidLight, DoesNotLeakThroughToTheFarSide) {
   }
 }
 
+TEST(SolidLight, FadesOutBeforeItsFaceTurnsAway) {
+  // The interpolated normal leans towards a lamp that goes down behind the flat face: nothing of the cosine is left
+  // when the face itself turns away, and on the way there it does not jump.
+  const vec3 face{0, 1, 0}, normal = glm::normalize(vec3{0.5f, 1, 0});
+  const auto lamp_light = [&](float elevation) {
+    Ground none;
+    none.visible = false;
+    Scene scene(test_sky(), none);
+    const float dark = scene.irradiance({0, 0, 0}, normal, face).y;
+    scene.set_lamps({{vec3{std::cos(elevation), std::sin(elevation), 0}, vec3{1.0f}}});
+    return scene.irradiance({0, 0, 0}, normal, face).y - dark;
+  };
+  const vec3 high{std::cos(1.4f), std::sin(1.4f), 0};
+  EXPECT_NEAR(lamp_light(1.4f), glm::dot(normal, high), 0.01f);
+  EXPECT_NEAR(lamp_light(-0.01f), 0.0f, 1e-6f);
+  for (float elevation = -0.1f; elevation < 1.0f; elevation += 0.01f)
+    EXPECT_LT(std::abs(lamp_light(elevation + 0.01f) - lamp_light(elevation)), 0.05f) << elevation;
+}
+
 TEST(SolidLight, OfALampFallsWithTheSquareOfTheDistanceAndTheCosine) {
   Scene scene = on_ground({{make_solid(sphere_mesh({5, 1, 0}, 0.2f)), kHere, {}}});
   const vec3 up{0, 1, 0};
