@@ -80,7 +80,9 @@ struct CausticsOptions {
   int iterations = 8;       ///< of the intersection with the geometry map, 1 .. 256
   float threshold = 0;      ///< m; 0: half a pixel of the geometry map
   bool exact_hits = false;  ///< refracted light meets the scene by ray, not in the geometry map
-  int map_size = 0;         ///< texels along the longer side of the map that the triangles are drawn into; 0: 1024
+  /// Texels along the longer side of the map that the triangles are drawn into; 0: two to a point of the screen, at
+  /// most 1024.
+  int map_size = 0;
   int most_lights = 4;      ///< sun and lamps that make caustics, the brightest first
 };
 
@@ -91,5 +93,16 @@ struct CausticsOptions {
 std::shared_ptr<const WaterLight> caustics(const Surface& surface, const Scene& scene, const Material& material,
                                            const CausticsOptions& options = {}, StageTimes* times = nullptr,
                                            const Bounds& region = {});
+
+/// What is drawn for the brightest light, for measurements.
+struct CausticsReport {
+  std::size_t triangles = 0;
+  double entered = 0, absorbed = 0, landed = 0;  ///< power of all channels together, W
+  double psnr_db = 0;       ///< of the first map against photons; white is four times the photons' mean
+  double reference_ms = 0;  ///< of the photons
+};
+/// @param finer  photons along a side of a point of the screen; 0: no reference
+CausticsReport measure_caustics(const Surface& surface, const Scene& scene, const Material& material,
+                                const CausticsOptions& options, StageTimes* times, int finer = 0);
 
 }  // namespace meniscus

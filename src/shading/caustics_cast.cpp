@@ -11,7 +11,7 @@ namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kMapSize = 1024, kSolidsSize = 512;
+constexpr int kMapSize = 1024, kSolidsSize = 512, kLeastSize = 128;
 /// Part of the box's longer side that is left around it for light that slopes bend outwards.
 constexpr float kMargin = 0.25f;
 /// Receivers that the first map sees at a smaller cosine are looked for by maps along the horizon.
@@ -171,10 +171,12 @@ LightCast cast_light(const Surface& surface, const LightSource& light, const Bou
                  std::sqrt(cast.screen.step.x * cast.screen.step.y);
   const float cos_i = std::max(glm::dot(to_light, up), 0.02f);
   const vec3 bent = formulas::refracted(-to_light, up, material.ior, formulas::fresnel(cos_i, material.ior).cos_t);
-  const int size = options.map_size > 0 ? options.map_size : kMapSize;
+  const int points = std::max(cast.screen.width, cast.screen.height);
+  const int size = options.map_size > 0 ? options.map_size : std::clamp(2 * points, kLeastSize, kMapSize);
+  const int solids_size = std::clamp(points, 2 * kLeastSize, kSolidsSize);
 
   // The solids as they are seen from the water's highest level on.
-  const View whole = view_along(bent, reach(box, scene, up, bent, -to_light), up, kSolidsSize, kMargin);
+  const View whole = view_along(bent, reach(box, scene, up, bent, -to_light), up, solids_size, kMargin);
   const float top = glm::dot(box.centre(), up) + 0.5f * glm::dot(box.extent(), glm::abs(up));
   SceneMap solids;
   Image<Landing> landings;
@@ -201,7 +203,7 @@ LightCast cast_light(const Surface& surface, const LightSource& light, const Bou
       needed = needed || (landing.state == LandingState::landed && -glm::dot(landing.normal, side) > kSteepReceiver &&
                           -glm::dot(landing.normal, bent) < kSteepReceiver && landing.passed != vec3{0.0f});
     if (!needed) continue;
-    const View level = view_along(side, box, up, kSolidsSize / 2, kMargin);
+    const View level = view_along(side, box, up, std::max(solids_size / 2, kLeastSize), kMargin);
     const float begin =
         2.0f * std::max(0.5f * glm::length(box.extent()), 1e-6f) - 0.5f * glm::dot(box.extent(), glm::abs(side));
     SceneMap walls = see_solids(level, scene, [&](const Ray&) { return begin; });
