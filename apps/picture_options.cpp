@@ -273,7 +273,7 @@ void PictureArguments::add_optics(CLI::App& command) {
       "--refraction", "NAME",
       [](PictureOptions& p, const std::string& name) { p.optics.refraction = refraction_method_of(name); },
       "How rays go on behind the surface: thickness (one interface, the far side guessed), image_space (one interface, "
-      "iteration in the picture of the scene), ray_traced (through the water, best) (default: thickness)");
+      "iteration in the picture of the scene), ray_traced (through the water, best) (default: ray_traced)");
   group.number<int>(
       "--bounces", "N", [](PictureOptions& p, int v) { p.optics.bounces = v; },
       "Interfaces in a ray-traced path at most, 1 to 64 (default: 8)");

@@ -257,7 +257,7 @@ struct PictureOptions {
   std::optional<Bounds> tank_inside;  ///< m; default around the particles of all frames
   std::optional<vec3> tank_albedo;    ///< of the tiles
   std::vector<PointLight> lamps;
-  OpticsOptions optics;
+  OpticsOptions optics{RefractionMethod::ray_traced};
   bool caustics = true;
   CausticsOptions caustics_options;
   SurfelOptions surfels;

@@ -69,6 +69,7 @@ float Scene::Parts::clearance(vec3 point) const { return 3e-5f * largest(point) 
 
 bool Scene::Parts::blocks(const Ray& ray, float from, float limit) const {
   if (solids && solids->blocks(ray, from, limit)) return true;
+  if (body && body->keeps_light_out(ray, from, limit)) return true;
   const float distance = ground_distance(ray);
   return distance < kInfinity && distance > from && distance < limit &&
          !(body && body->opens_ground(ray.origin + distance * ray.direction));

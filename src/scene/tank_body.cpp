@@ -20,6 +20,8 @@ constexpr float kGlass = 1.5f;
 constexpr float kJoint = 0.05f;
 /// Planes are this much larger than they are, in extents of the tank, so that no ray slips through a corner.
 constexpr float kOverlap = 2e-6f;
+/// How far water may bulge beyond a wall, in diagonals of the tank.
+constexpr float kBulge = 0.015f;
 /// What is seen of the edges of glass panes: light that was led there, greenish.
 const vec3 kEdgeColour{0.62f, 0.80f, 0.74f};
 
@@ -220,7 +222,31 @@ TankBody::Panes TankBody::panes(const Ray& ray, float limit) const {
   return result;
 }
 
+bool TankBody::keeps_light_out(const Ray& ray, float from, float limit) const {
+  if (tank_.style != TankStyle::tiled) return false;
+  const Bounds& inside = tank_.inside;
+  const float bulge = kBulge * glm::length(inside.extent());
+  const bool above_floor = ray.origin[up_] > inside.low[up_] + 0.02f * bulge && ray.origin[up_] < inside.high[up_];
+  for (int axis = 0; axis < 3; ++axis) {
+    const float along = ray.direction[axis];
+    if (along == 0) continue;
+    for (const bool high : {false, true}) {
+      if (axis == up_ && high) continue;
+      const float distance = ((high ? inside.high[axis] : inside.low[axis]) - ray.origin[axis]) / along;
+      const bool outwards = (along > 0) == high;
+      const float nearest = outwards && axis != up_ && above_floor ? -bulge / std::abs(along) : from;
+      if (!(distance >= nearest && distance <= limit)) continue;
+      const vec3 point = ray.origin + std::max(distance, 0.0f) * ray.direction;
+      if (within(inside, point, (axis + 1) % 3, bulge) && within(inside, point, (axis + 2) % 3, bulge) &&
+          point[up_] < inside.high[up_])
+        return true;
+    }
+  }
+  return false;
+}
+
 vec3 TankBody::light_transmittance(const Ray& ray, float length) const {
+  if (keeps_light_out(ray, 0, length)) return vec3{0.0f};
   vec3 left{1.0f};
   const Panes crossed = panes(ray, length);
   for (int k = 0; k < crossed.count; ++k) left *= crossed.panes[static_cast<std::size_t>(k)].transmittance;

@@ -10,7 +10,7 @@ namespace meniscus {
 /// Everything is analytic: a handful of planes and bars.
 ///
 /// tiled: a floor and four walls that are seen from the inside only, and a flat rim around the upper edge that is seen
-/// from above only. None of them keeps light out.
+/// from above only. Light does not pass floor and walls, from whichever side: it comes in over the rim.
 /// glass: twelve bars along the edges that rays meet, and four panes that they pass.
 class TankBody {
  public:
@@ -25,6 +25,9 @@ class TankBody {
   bool opens_ground(vec3 point) const;
   /// What is left of light along a ray of this length.
   vec3 light_transmittance(const Ray& ray, float length) const;
+  /// Whether a wall or the floor of a tiled tank keeps light from coming along the ray, `from` to `limit` m from its
+  /// origin. Water bulges a little beyond the walls: there is no light for it either.
+  bool keeps_light_out(const Ray& ray, float from, float limit) const;
 
   /// A pane that a ray crosses.
   struct Pane {

@@ -21,7 +21,7 @@ struct Preset {
 // Water takes red away first: pure water absorbs 0.28, 0.057 and 0.009 per metre at 620, 550 and 450 nm
 // [PopeFry1997]. Natural water absorbs more blue than that; a little scattering keeps deep water from being black.
 const Preset kPresets[] = {
-    {"water", true, 1.333f, {2.20f, 0.78f, 0.44f}, {0.030f, 0.090f, 0.130f}, {0.06f, 0.42f, 0.70f}, 0.0f, 1.0f},
+    {"water", true, 1.333f, {0.75f, 0.26f, 0.16f}, {0.012f, 0.035f, 0.050f}, {0.06f, 0.42f, 0.70f}, 0.0f, 1.0f},
     {"sea", true, 1.34f, {2.60f, 0.80f, 0.75f}, {0.20f, 0.55f, 0.50f}, {0.08f, 0.50f, 0.48f}, 0.05f, 1.0f},
     {"milk", true, 1.35f, {0.02f, 0.04f, 0.10f}, {26.0f, 28.0f, 31.0f}, {0.93f, 0.91f, 0.86f}, 0.10f, 1.0f},
     {"oil", true, 1.47f, {0.14f, 0.55f, 3.20f}, {0.10f, 0.10f, 0.05f}, {0.85f, 0.55f, 0.08f}, 0.0f, 1.0f},

@@ -61,13 +61,35 @@ TEST(TiledTank, IsSeenFromInsideAndNotFromOutside) {
   EXPECT_EQ(scene.distance({{5, 1.4f, 0}, {-1, 0, 0}}), kInfinity) << "over it";
 }
 
-TEST(TiledTank, KeepsNoLightOut) {
-  const Scene scene = with_tank(tank_of(TankStyle::tiled));
-  const vec3 up{0, 1, 0}, point{-0.9f, 0, -1.9f};
-  const vec3 open = test_sky().irradiance(up) + test_sky().sun_irradiance() * test_sky().sun_direction().y;
-  EXPECT_LT(glm::length(scene.irradiance(point, up, up) - open), 1e-5f);
-  EXPECT_FALSE(scene.shadowed(point + 0.01f * up, test_sky().sun_direction()));
-  EXPECT_FALSE(scene.blocked({0, 0.5f, 0}, {4, 0.5f, 0}));
+TEST(TiledTank, LetsLightInOverItsRimOnly) {
+  const Tank tank = tank_of(TankStyle::tiled);
+  const Scene scene = with_tank(tank);
+  const vec3 up{0, 1, 0}, sun = test_sky().sun_direction();
+  const vec3 sky = test_sky().irradiance(up), open = sky + test_sky().sun_irradiance() * sun.y;
+  // Points of the floor, from which the way to the sun leaves the tank through its top or through a wall.
+  int lit = 0, dark = 0;
+  for (float x = tank.inside.low.x + 0.05f; x < tank.inside.high.x; x += 0.1f)
+    for (float z = tank.inside.low.z + 0.05f; z < tank.inside.high.z; z += 0.1f) {
+      const vec3 point{x, tank.inside.low.y, z};
+      const vec3 rim = point + sun * ((tank.inside.high.y - point.y) / sun.y);
+      const bool passes = rim.x > tank.inside.low.x && rim.x < tank.inside.high.x && rim.z > tank.inside.low.z &&
+                          rim.z < tank.inside.high.z;
+      ++(passes ? lit : dark);
+      EXPECT_EQ(scene.shadowed(point + 0.01f * up, sun), !passes) << x << " " << z;
+      EXPECT_LT(glm::length(scene.irradiance(point, up, up) - (passes ? open : sky)), 1e-4f) << x << " " << z;
+    }
+  EXPECT_GT(lit, 10);
+  EXPECT_GT(dark, 10);
+  EXPECT_TRUE(scene.blocked({0, 0.5f, 0}, {4, 0.5f, 0}));
+  EXPECT_TRUE(scene.blocked({4, 0.5f, 0}, {0, 0.5f, 0}));
+}
+
+TEST(TiledTank, KeepsLightFromWaterThatBulgesThroughAWall) {
+  const Tank tank = tank_of(TankStyle::tiled);
+  const Scene scene = with_tank(tank);
+  const float beyond = tank.inside.high.x + 0.01f, height = 0.5f * (tank.inside.low.y + tank.inside.high.y);
+  EXPECT_TRUE(scene.shadowed({beyond, height, 0}, glm::normalize(vec3{1, 1, 0})));
+  EXPECT_FALSE(scene.shadowed({beyond + 1, height, 0}, glm::normalize(vec3{1, 1, 0}))) << "outside";
 }
 
 TEST(TiledTank, FloorCoversTheGroundThatItLiesOn) {
