@@ -1,7 +1,7 @@
 /// Bilateral Gaussian filter of the normal map.
 #pragma once
 
-#include "meniscus/base.h"
+#include "meniscus/surface.h"
 
 namespace meniscus {
 
@@ -14,6 +14,14 @@ namespace meniscus {
 /// @return           unit normals, zero where there is no surface
 Image<vec3> filtered_normals(const View& view, const Image<float>& depth, const Image<vec3>& normals, int radius,
                              float tolerance);
+
+/// Gives single points the smoothness of the filtered map: the mean of the normals around that belong to the same
+/// piece of surface, where there are any.
+/// @param coarse     depth and filtered normals of the view's pixels
+/// @param points     picture points of the N x 1 images of `fine`, whose normals are replaced
+/// @param tolerance  m
+void take_filtered_normals(const View& view, const SurfaceBuffers& coarse, std::span<const vec2> points,
+                           float tolerance, SurfaceBuffers& fine);
 
 /// 1 - cosine of the angle at which two normals stop mixing in the filter: about 30 degrees.
 constexpr float kNormalSharpness = 0.13f;

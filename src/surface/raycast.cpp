@@ -8,16 +8,16 @@
 
 #include "surface/hidden_cells.h"
 #include "surface/march.h"
+#include "surface/masses.h"
 #include "surface/normal_filter.h"
 #include "surface/packet.h"
 #include "surface/splat.h"
-#include "surface/thickness_filter.h"
+#include "surface/thickness.h"
 
 namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kMassGrain = 4096;
 
 /// Sixteen picture points that are drawn together, and where their results go.
 struct Block {
@@ -103,9 +103,8 @@ class RaycastSurface final : public Surface {
         }()) {
     StageTimer timer(times, "masses");
     if (field_.options.cull_interior) find_hidden_cells(field_);
-    if (field_.options.keep_thin) find_masses();
+    if (field_.options.keep_thin) find_masses(field_);
     spheres_ = entry_spheres(field_);
-    thickness_radius_ = thickness_radius(field_.options);
   }
 
   SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
@@ -137,22 +136,15 @@ class RaycastSurface final : public Surface {
     }
     if (points.empty()) return fine;
     find_surface(view, points, fine, times);
-    if (!coarse.normal.empty()) take_filtered_normals(view, coarse, points, fine);
-    if (!coarse.thickness.empty()) fine.thickness = sampled(coarse.thickness, points);
+    if (field_.options.filter_radius > 0 && !coarse.normal.empty() && !fine.normal.empty())
+      take_filtered_normals(view, coarse, points, filter_tolerance(), fine);
+    if (!coarse.thickness.empty()) fine.thickness = sampled_picture(coarse.thickness, points);
     return fine;
   }
 
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "thickness");
-    const ParticleGrid& grid = field_.grid;
-    // Each sphere counts for the water of one particle.
-    const float s = field_.options.spacing, r = thickness_radius_;
-    const float weight = s * s * s / (4.0f / 3.0f * 3.14159265f * r * r * r);
-    const int stride = thickness_stride(view);
-    const Image<float> coarse = splat_chords(
-        view, {{grid.x(), grid.size()}, {grid.y(), grid.size()}, {grid.z(), grid.size()}, {&r, 1}}, weight, stride);
-    const float spacing_px = s / view.pixel_size(middle_depth(view)) / static_cast<float>(stride);
-    return enlarged(smoothed_thickness(coarse, std::min(spacing_px, 4.0f), s), stride, view, points);
+    return splatted_thickness(field_.grid, field_.options.spacing, view, points);
   }
 
   float spacing() const override { return field_.options.spacing; }
@@ -169,50 +161,6 @@ class RaycastSurface final : public Surface {
   Bounds bounds() const override { return field_.grid.bounds().grown(field_.options.smoothing_length); }
 
  private:
-  /// Masses by the rule of raycast_field.h, and the spheres of particles that are packed closely. Particles that
-  /// nobody sees keep a mass of one, which is what the rule gives inside the water.
-  void find_masses() {
-    const MassRule rule = mass_rule(field_.options);
-    const ParticleGrid& grid = field_.grid;
-    const float per_cell = 1.0f / grid.cell_size();
-    const auto cell_of = [&](std::size_t i) {
-      const vec3 at = (grid.position(i) - grid.bounds().low) * per_cell;
-      return grid.cell_index(std::min(static_cast<int>(at.x), grid.cells_x() - 1),
-                             std::min(static_cast<int>(at.y), grid.cells_y() - 1),
-                             std::min(static_cast<int>(at.z), grid.cells_z() - 1));
-    };
-    parallel_for(grid.size(), kMassGrain, [&](std::size_t begin, std::size_t end) {
-      PacketPoints points;
-      alignas(64) float density[kPacket];
-      for (std::size_t i = begin; i < end;) {
-        const std::size_t cell = cell_of(i);
-        if (field_.is_hidden(cell)) {
-          ++i;
-          continue;
-        }
-        // A packet is up to sixteen particles of this cell and the next one in its row.
-        std::size_t last = i + 1;
-        while (last < end && last - i < kPacket) {
-          const std::size_t other = cell_of(last);
-          if (other > cell + 1 || (other != cell && field_.is_hidden(other))) break;
-          ++last;
-        }
-        for (std::size_t l = 0; l < kPacket; ++l) {
-          const std::size_t from = std::min(i + l, last - 1);
-          points.x[l] = grid.x()[from];
-          points.y[l] = grid.y()[from];
-          points.z[l] = grid.z()[from];
-        }
-        const auto mask = static_cast<PacketMask>((1u << (last - i)) - 1u);
-        density_packet(field_, points, mask, true, thread_list(), density);
-        for (std::size_t l = 0; i < last; ++i, ++l) {
-          field_.mass[i] = mass_at(rule, density[l]);
-          field_.entry_radius[i] = entry_radius_at(field_.options, density[l]);
-        }
-      }
-    });
-  }
-
   /// Whether rays of this view start inside the water.
   bool starts_inside(const View& view) const {
     if (view.projection != Projection::perspective || field_.grid.size() == 0) return false;
@@ -340,84 +288,8 @@ class RaycastSurface final : public Surface {
       if ((mask >> l) & 1u) buffers.colour[block.targets[l]] = {colours.x[l], colours.y[l], colours.z[l]};
   }
 
-  /// Gives single points the smoothness of the filtered map: the mean of the normals around that belong to the
-  /// same piece of surface, where there are any.
-  void take_filtered_normals(const View& view, const SurfaceBuffers& coarse, std::span<const vec2> points,
-                             SurfaceBuffers& fine) const {
-    if (fine.normal.empty() || field_.options.filter_radius == 0) return;
-    const float tolerance = filter_tolerance();
-    parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!(fine.depth[i] < kInfinity)) continue;
-        const Ray ray = view.ray(points[i]);
-        const vec3 own = ray.origin + fine.depth[i] * ray.direction;
-        const int x = static_cast<int>(points[i].x), y = static_cast<int>(points[i].y);
-        vec3 sum{0};
-        for (int qy = std::max(y - 1, 0); qy <= std::min(y + 1, view.height - 1); ++qy)
-          for (int qx = std::max(x - 1, 0); qx <= std::min(x + 1, view.width - 1); ++qx) {
-            const float depth = coarse.depth(qx, qy);
-            if (!(depth < kInfinity)) continue;
-            const Ray other = view.ray({static_cast<float>(qx) + 0.5f, static_cast<float>(qy) + 0.5f});
-            const vec3 normal = coarse.normal(qx, qy);
-            const float off_plane = glm::dot(normal, own - (other.origin + depth * other.direction)) / tolerance;
-            const float agreement = glm::dot(normal, fine.normal[i]);
-            sum += normal * std::exp(-0.5f * off_plane * off_plane + (agreement - 1.0f) / kNormalSharpness);
-          }
-        sum += 0.05f * fine.normal[i];
-        fine.normal[i] = glm::normalize(sum);
-      }
-    });
-  }
-
-  /// Depth of the middle of the water, m, for what depends on how large a particle is seen.
-  float middle_depth(const View& view) const {
-    const Bounds box = field_.grid.bounds();
-    return std::max(glm::dot(box.centre() - view.eye, view.forward), field_.options.spacing);
-  }
-
-  /// Pixels between the samples of the thickness: one to two samples a spacing in the middle of the water.
-  int thickness_stride(const View& view) const {
-    if (field_.grid.size() == 0) return 1;
-    return std::clamp(static_cast<int>(field_.options.spacing / view.pixel_size(middle_depth(view)) / 1.4f), 1, 8);
-  }
-
-  /// Bilinear between the centres of blocks of stride x stride pixels.
-  static float between(const Image<float>& coarse, int stride, float x, float y) {
-    const float u = std::clamp(x / static_cast<float>(stride) - 0.5f, 0.0f, static_cast<float>(coarse.width() - 1));
-    const float v = std::clamp(y / static_cast<float>(stride) - 0.5f, 0.0f, static_cast<float>(coarse.height() - 1));
-    const int x0 = static_cast<int>(u), y0 = static_cast<int>(v);
-    const int x1 = std::min(x0 + 1, coarse.width() - 1), y1 = std::min(y0 + 1, coarse.height() - 1);
-    const float fu = u - static_cast<float>(x0), fv = v - static_cast<float>(y0);
-    return (1 - fv) * ((1 - fu) * coarse(x0, y0) + fu * coarse(x1, y0)) +
-           fv * ((1 - fu) * coarse(x0, y1) + fu * coarse(x1, y1));
-  }
-
-  static Image<float> sampled(const Image<float>& picture, std::span<const vec2> points) {
-    Image<float> values(static_cast<int>(points.size()), 1);
-    for (std::size_t i = 0; i < points.size(); ++i) values[i] = between(picture, 1, points[i].x, points[i].y);
-    return values;
-  }
-
-  static Image<float> enlarged(const Image<float>& coarse, int stride, const View& view, std::span<const vec2> points) {
-    if (!points.empty()) {
-      Image<float> values(static_cast<int>(points.size()), 1);
-      for (std::size_t i = 0; i < points.size(); ++i) values[i] = between(coarse, stride, points[i].x, points[i].y);
-      return values;
-    }
-    if (stride == 1) return coarse;
-    Image<float> full(view.width, view.height);
-    parallel_for(static_cast<std::size_t>(view.height), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t y = begin; y < end; ++y)
-        for (int x = 0; x < view.width; ++x)
-          full(x, static_cast<int>(y)) =
-              between(coarse, stride, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-    });
-    return full;
-  }
-
   RaycastField field_;
   SphereSet spheres_;
-  float thickness_radius_ = 0;  ///< m
   mutable std::once_flag cells_made_;
   mutable std::optional<MarchCells> cells_;  ///< made when rays are followed for the first time
 };

@@ -63,7 +63,7 @@ class SurfelSurface final : public Surface {
     if (points.empty()) return {};
     if (view.projection == Projection::cube) return see_cube(view, points, times);
     SurfaceBuffers fine = splatted(view, points, times);
-    if (options_.filter_radius > 0) take_filtered_normals(view, coarse, points, fine);
+    if (options_.filter_radius > 0) take_filtered_normals(view, coarse, points, filter_tolerance(), fine);
     add_colours(view, points, fine, times);
     if (!coarse.thickness.empty()) fine.thickness = sampled_picture(coarse.thickness, points);
     return fine;
@@ -227,33 +227,6 @@ class SurfelSurface final : public Surface {
   }
 
   float filter_tolerance() const { return 0.5f * options_.spacing; }
-
-  /// Gives single points the smoothness of the filtered map: the mean of the normals around that belong to the same
-  /// piece of surface, where there are any.
-  void take_filtered_normals(const View& view, const SurfaceBuffers& coarse, std::span<const vec2> points,
-                             SurfaceBuffers& fine) const {
-    const float tolerance = filter_tolerance();
-    parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!(fine.depth[i] < kInfinity)) continue;
-        const Ray ray = view.ray(points[i]);
-        const vec3 own = ray.origin + fine.depth[i] * ray.direction;
-        const int x = static_cast<int>(points[i].x), y = static_cast<int>(points[i].y);
-        vec3 sum = 0.05f * fine.normal[i];
-        for (int qy = std::max(y - 1, 0); qy <= std::min(y + 1, view.height - 1); ++qy)
-          for (int qx = std::max(x - 1, 0); qx <= std::min(x + 1, view.width - 1); ++qx) {
-            if (!(coarse.depth(qx, qy) < kInfinity)) continue;
-            const Ray other = view.ray({static_cast<float>(qx) + 0.5f, static_cast<float>(qy) + 0.5f});
-            const vec3 normal = coarse.normal(qx, qy);
-            const vec3 offset = own - (other.origin + coarse.depth(qx, qy) * other.direction);
-            const float off_plane = glm::dot(normal, offset) / tolerance;
-            const float agreement = glm::dot(normal, fine.normal[i]);
-            sum += normal * std::exp(-0.5f * off_plane * off_plane + (agreement - 1.0f) / kNormalSharpness);
-          }
-        fine.normal[i] = glm::normalize(sum);
-      }
-    });
-  }
 
   /// Calls visit(face, points in it, their places in the list) for the faces of a cube that have points.
   template <class Visit>

@@ -23,7 +23,7 @@ float between(const Image<float>& coarse, int stride, float x, float y) {
 
 Image<float> splatted_thickness(const ParticleGrid& grid, float spacing, const View& view,
                                 std::span<const vec2> points) {
-  const float radius = 1.25f * spacing;
+  const float radius = 1.25f * spacing;  // thickness_radius() of raycast_field.h
   const float weight = spacing * spacing * spacing / (4.0f / 3.0f * 3.14159265f * radius * radius * radius);
   // One to two samples a spacing in the middle of the water.
   const float middle = std::max(glm::dot(grid.bounds().centre() - view.eye, view.forward), spacing);
