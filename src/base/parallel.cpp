@@ -28,6 +28,15 @@ namespace {
 /// Threads asked for by the innermost ThreadLimit; 0: all cores.
 std::atomic<int> requested_threads{0};
 
+/// Threads that may run now. Of nested limits, those of other libraries included, the least one holds; an arena for
+/// more would make oneTBB complain.
+int allowed_threads() {
+  const int requested = requested_threads.load();
+  if (requested <= 0) return tbb::info::default_concurrency();
+  const std::size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return static_cast<int>(std::min(static_cast<std::size_t>(requested), most));
+}
+
 struct Limit {
   tbb::global_control control;
   int outer;
@@ -63,10 +72,10 @@ void parallel_for(std::size_t count, std::size_t grain, FunctionRef<void(std::si
   }
   if (failure) std::rethrow_exception(failure);
 #else
-  const int requested = requested_threads.load();
-  if (requested > tbb::info::default_concurrency()) {
+  const int threads = allowed_threads();
+  if (threads > tbb::info::default_concurrency()) {
     // The default arena has one slot a core; more threads than cores need an arena of their own.
-    tbb::task_arena(requested).execute([&] { tbb::parallel_for(std::size_t{0}, pieces, run); });
+    tbb::task_arena(threads).execute([&] { tbb::parallel_for(std::size_t{0}, pieces, run); });
     return;
   }
   tbb::parallel_for(std::size_t{0}, pieces, run);
@@ -86,9 +95,6 @@ ThreadLimit::~ThreadLimit() {
   delete limit;
 }
 
-int thread_count() {
-  const int requested = requested_threads.load();
-  return requested > 0 ? requested : tbb::info::default_concurrency();
-}
+int thread_count() { return allowed_threads(); }
 
 }  // namespace meniscus

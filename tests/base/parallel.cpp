@@ -115,5 +115,23 @@ TEST(ThreadLimit, GivesBackWhatItTook) {
   EXPECT_EQ(thread_count(), before);
 }
 
+TEST(ThreadLimit, ALargerOneInsideOfASmallerOneLeavesItAndSaysNothing) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  {
+    const ThreadLimit outer(2);
+    const ThreadLimit inner(7);
+    EXPECT_EQ(thread_count(), 2);
+    EXPECT_EQ(pieces_of(100, 3).size(), 34u);
+  }
+  {
+    const ThreadLimit alone(7);
+    EXPECT_EQ(thread_count(), 7);
+    EXPECT_EQ(pieces_of(100, 3).size(), 34u);
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
 }  // namespace
 }  // namespace meniscus
