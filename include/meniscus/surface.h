@@ -155,9 +155,12 @@ struct Surfel {
   vec3 position;  ///< on the iso-surface, m
   vec3 normal;    ///< unit, out of the water
   float radius;   ///< m; neighbours' discs overlap, so that no gap remains
-  /// 1/m, mean curvature: 0 for a flat disc, > 0 where the water bulges. The disc is drawn as the cap of a sphere of
-  /// radius 1 / curvature, so that discs do not stick out of drops.
+  /// 1/m, mean curvature: 0 for a flat disc, > 0 where the water bulges. The disc is drawn bent, so that it does not
+  /// stick out of drops: as the cap of a ball of radius 1 / curvature where bend is zero.
   float curvature = 0;
+  /// 1/m, half the difference of the two principal curvatures, in the tangent direction of the larger one: on a
+  /// cylinder across its axis and as long as curvature. Zero where the surface is bent alike in all directions.
+  vec3 bend{0.0f};
 };
 
 struct SurfelOptions {

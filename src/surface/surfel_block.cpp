@@ -201,7 +201,9 @@ class Block {
     }
     gather_near(field_, in_world(low), in_world(high), list);
     const int count = static_cast<int>(last - first);
-    PacketPoints points, normals;
+    PacketPoints points;
+    PacketTangents tangents;
+    vec3 normals[kPacket];
     IsoSums sums;
     bool near[kPacket] = {};
     for (int evaluation = 1;; ++evaluation) {
@@ -227,22 +229,41 @@ class Block {
       const vec3 gradient{sums.gx[l], sums.gy[l], sums.gz[l]};
       const float size = glm::length(gradient);
       const vec3 normal = size > 0.0f ? -gradient / size : vec3{0, 0, 1};
-      normals.x[l] = normal.x;
-      normals.y[l] = normal.y;
-      normals.z[l] = normal.z;
+      normals[l] = normal;
+      // Along the surface, first across the axis that the normal has least of.
+      const vec3 size3 = glm::abs(normal);
+      const vec3 axis = size3.x <= size3.y && size3.x <= size3.z ? vec3{1, 0, 0}
+                        : size3.y <= size3.z                     ? vec3{0, 1, 0}
+                                                                 : vec3{0, 0, 1};
+      const vec3 t = glm::normalize(glm::cross(normal, axis)), u = glm::cross(normal, t);
+      tangents.t.x[l] = t.x, tangents.t.y[l] = t.y, tangents.t.z[l] = t.z;
+      tangents.u.x[l] = u.x, tangents.u.y[l] = u.y, tangents.u.z[l] = u.z;
     }
-    iso_sums(field_, list, points, &normals, sums);
+    iso_sums(field_, list, points, &tangents, sums);
     for (int l = 0; l < count; ++l) {
       if (lanes[l]->axis == 3 && !near[l]) continue;  // two pieces of surface in one cell: between them is none
       Surfel surfel;
       surfel.position = {points.x[l], points.y[l], points.z[l]};
-      surfel.normal = {normals.x[l], normals.y[l], normals.z[l]};
+      surfel.normal = normals[l];
       surfel.radius = grid_.step * (kRadiusMargin * lanes[l]->reach + kLeastRadius);
-      // Ripple of single particles tells nothing of the surface's form.
-      const float most = kMostBend / surfel.radius;
-      surfel.curvature = std::clamp(sums.curvature[l], -most, most);
+      bend(sums.tt[l], sums.uu[l], sums.tu[l], {tangents.t.x[l], tangents.t.y[l], tangents.t.z[l]},
+           {tangents.u.x[l], tangents.u.y[l], tangents.u.z[l]}, surfel);
       surfels.push_back(surfel);
     }
+  }
+
+  /// Mean curvature and bend from the curvatures in the frame of the tangents t and u. The principal ones are kept from
+  /// bending the disc too much: ripple of single particles tells nothing of the surface's form.
+  static void bend(float tt, float uu, float tu, vec3 t, vec3 u, Surfel& surfel) {
+    const float mean = 0.5f * (tt + uu), half = 0.5f * (tt - uu), size = std::sqrt(half * half + tu * tu);
+    const float most = kMostBend / surfel.radius;
+    const float larger = std::clamp(mean + size, -most, most), smaller = std::clamp(mean - size, -most, most);
+    surfel.curvature = 0.5f * (larger + smaller);
+    if (!(size > 0.0f)) return;
+    // The larger one lies half the angle of (half, tu) from t.
+    const float c = std::sqrt(std::max(0.5f + 0.5f * half / size, 0.0f)),
+                s = std::copysign(std::sqrt(std::max(0.5f - 0.5f * half / size, 0.0f)), tu);
+    surfel.bend = 0.5f * (larger - smaller) * glm::normalize(c * t + s * u);
   }
 
   /// One step towards the surface: Newton's, along the edge within the ends that bracket it, or along the gradient.
@@ -262,7 +283,7 @@ class Block {
   }
 
   static constexpr float kRadiusMargin = 1.15f, kLeastRadius = 0.12f;  ///< steps; curvature and rounding
-  static constexpr float kMostBend = 0.7f;                             ///< curvature times radius
+  static constexpr float kMostBend = 0.7f;                             ///< principal curvature times radius
 
   const RaycastField& field_;
   const SurfelGrid& grid_;

@@ -4,18 +4,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "surface/packet.h"
+#include "surface/surfel_tile.h"
+
 namespace meniscus {
 namespace {
 
-constexpr int kTile = 32;  ///< px
+constexpr int kTile = kSurfelTile;
 constexpr std::size_t kGrain = 1 << 13;
-
-/// A surfel in camera space (x right, y up, z forward), its normal towards the eye's side.
-struct Disc {
-  vec3 centre, normal;
-  float radius2, curvature;
-  std::int16_t x0, x1, y0, y1;  ///< pixels that it may cover, both ends included; x0 > x1: none
-};
 
 struct Camera {
   explicit Camera(const View& view)
@@ -45,22 +41,37 @@ Range seen(float c, float half, float z, float deep) {
   return {low / (low < 0 ? nearest : farthest), high / (high > 0 ? nearest : farthest)};
 }
 
+/// The disc's form from its mean curvature and bend: S = k b b + l c c + m n n, with the larger curvature k along b,
+/// the smaller one l along c, and m that of them which is larger in size, so that balls and cylinders are met exactly.
+void set_form(const Camera& camera, const Surfel& surfel, float side, SurfelDisc& disc) {
+  const float size = glm::length(surfel.bend);
+  const float k = side * (surfel.curvature + size), l = side * (surfel.curvature - size),
+              m = std::abs(k) > std::abs(l) ? k : l;
+  const vec3 n = disc.normal;
+  disc.straight = vec3{l} + (m - l) * n * n;
+  disc.skew = (m - l) * vec3{n.y * n.z, n.z * n.x, n.x * n.y};
+  if (!(size > 0.0f)) return;
+  const vec3 b = camera.turned(surfel.bend / size);
+  disc.straight += (k - l) * b * b;
+  disc.skew += (k - l) * vec3{b.y * b.z, b.z * b.x, b.x * b.y};
+}
+
 /// The surfel as it is seen; covers nothing where it turns its back or lies behind the eye.
-Disc seen_disc(const Camera& camera, const Surfel& surfel, bool from_inside, float margin) {
-  Disc disc;
+SurfelDisc seen_disc(const Camera& camera, const Surfel& surfel, bool from_inside, float margin) {
+  SurfelDisc disc;
   disc.x0 = disc.y0 = 1;
   disc.x1 = disc.y1 = 0;
+  const float side = from_inside ? -1.0f : 1.0f, radius = surfel.radius;
   disc.centre = camera.turned(surfel.position - camera.view.eye);
-  disc.normal = camera.turned(from_inside ? -surfel.normal : surfel.normal);
-  disc.curvature = from_inside ? -surfel.curvature : surfel.curvature;
-  const float radius = surfel.radius;
-  disc.radius2 = radius * radius;
+  disc.normal = camera.turned(side * surfel.normal);
   // Back faces are culled; the rim of a bulging cap may still face the eye.
+  const float bend = glm::length(surfel.bend), most = std::max(side * surfel.curvature + bend, 0.0f);
   const float facing =
       camera.perspective ? glm::dot(disc.normal, disc.centre) / glm::length(disc.centre) : disc.normal.z;
-  if (!(facing < std::max(disc.curvature, 0.0f) * radius)) return disc;
+  if (!(facing < most * radius)) return disc;
   if (disc.centre.z + radius <= 0.0f) return disc;
-  const float bulge = 0.5f * std::abs(disc.curvature) * disc.radius2;
+  disc.radius2 = radius * radius;
+  const float bulge = 0.5f * (std::abs(surfel.curvature) + bend) * disc.radius2;
   const auto half = [&](float n) { return radius * std::sqrt(std::max(1.0f - n * n, 0.0f)) + bulge; };
   const float deep = half(disc.normal.z);
   Range u{disc.centre.x - half(disc.normal.x), disc.centre.x + half(disc.normal.x)};
@@ -79,6 +90,7 @@ Disc seen_disc(const Camera& camera, const Surfel& surfel, bool from_inside, flo
   disc.x1 = static_cast<std::int16_t>(std::min(x1, width - 1));
   disc.y0 = static_cast<std::int16_t>(std::max(y0, 0.0f));
   disc.y1 = static_cast<std::int16_t>(std::min(y1, height - 1));
+  set_form(camera, surfel, side, disc);
   return disc;
 }
 
@@ -114,19 +126,37 @@ Tiles sorted(std::size_t count, std::size_t tiles, TilesOf tiles_of) {
   return result;
 }
 
-/// Where a ray meets a surfel.
-struct Meeting {
-  std::uint32_t sample, disc;
-  float depth;   ///< in lengths of the ray's direction
-  float weight;  ///< g of eq. 2
-  vec3 normal;   ///< of the cap at that place
-};
-
-/// The samples of one tile, sorted by pixel.
+/// The samples of one tile, sorted by pixel, and what is summed for them; kept by each thread from tile to tile.
 struct TileSamples {
   std::vector<std::uint32_t> start;   ///< by pixel of the tile, and one more
   std::vector<vec2> place;            ///< on the plane
   std::vector<std::uint32_t> target;  ///< in the buffers
+  AlignedFloats values;
+
+  void clear() {
+    start.clear();
+    place.clear();
+    target.clear();
+  }
+
+  /// The arrays that the passes work on.
+  SurfelSamples arrays(bool perspective) {
+    const std::size_t count = place.size(), pitch = (count + 2 * kSampleRoom) / kSampleRoom * kSampleRoom;
+    values.reserve(10 * pitch, 0);
+    float* const v = values.data();
+    std::fill_n(v, 10 * pitch, 0.0f);
+    std::fill_n(v + 2 * pitch, pitch, 1.0f);
+    std::fill_n(v + 3 * pitch, pitch, std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < count; ++i) {
+      v[i] = place[i].x;
+      v[pitch + i] = place[i].y;
+      if (perspective) v[2 * pitch + i] = std::sqrt(1.0f + glm::dot(place[i], place[i]));
+    }
+    return {count,         start.data(),  v,
+            v + pitch,     v + 2 * pitch, v + 3 * pitch,
+            v + 4 * pitch, v + 5 * pitch, v + 6 * pitch,
+            v + 7 * pitch, v + 8 * pitch, v + 9 * pitch};
+  }
 };
 
 class Splat {
@@ -142,11 +172,14 @@ class Splat {
     discs_.resize(surfels.size());
     const float margin = points_.empty() ? 0.01f : 0.51f;  // points lie anywhere in their pixels
     parallel_for(surfels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) discs_[i] = seen_disc(camera_, surfels[i], from_inside_, margin);
+      for (std::size_t i = begin; i < end; ++i) {
+        discs_[i] = seen_disc(camera_, surfels[i], from_inside_, margin);
+        if (!normals_.empty()) discs_[i].shaded = normals_[i];
+      }
     });
     const auto tiles = static_cast<std::size_t>(tiles_x_ * tiles_y_);
     const Tiles by_tile = sorted(discs_.size(), tiles, [&](std::size_t i, auto visit) {
-      const Disc& disc = discs_[i];
+      const SurfelDisc& disc = discs_[i];
       if (disc.x0 > disc.x1) return;
       for (int y = disc.y0 / kTile; y <= disc.y1 / kTile; ++y)
         for (int x = disc.x0 / kTile; x <= disc.x1 / kTile; ++x) visit(static_cast<std::size_t>(y * tiles_x_ + x));
@@ -160,7 +193,8 @@ class Splat {
       const std::span<const std::uint32_t> mine(by_tile.index.data() + by_tile.start[tile],
                                                 by_tile.start[tile + 1] - by_tile.start[tile]);
       if (mine.empty()) return;
-      TileSamples samples;
+      thread_local TileSamples samples;
+      samples.clear();
       const int x = static_cast<int>(tile) % tiles_x_ * kTile, y = static_cast<int>(tile) / tiles_x_ * kTile;
       if (points_.empty())
         take_pixels(x, y, samples);
@@ -210,84 +244,22 @@ class Splat {
     }
   }
 
-  /// Where the ray meets the surfel: a sphere of radius 1 / curvature that touches the disc in its centre, cut off at
-  /// the disc's radius, solved so that a flat disc needs no case of its own.
-  bool meet(const Disc& disc, vec3 origin, vec3 direction, float per_length2, Meeting& meeting) const {
-    const vec3 offset = origin - disc.centre;
-    const float nearest = -glm::dot(offset, direction) * per_length2;
-    const vec3 w = offset + nearest * direction;
-    const float w2 = glm::dot(w, w);
-    if (w2 > disc.radius2) return false;
-    const float half_bend = 0.5f * disc.curvature;
-    const float a = half_bend / per_length2, b = glm::dot(disc.normal, direction),
-                c = half_bend * w2 + glm::dot(disc.normal, w);
-    const float root2 = b * b - 4.0f * a * c;
-    if (root2 < 0.0f) return false;
-    const float below = std::sqrt(root2) - b;
-    if (!(below > 1e-6f)) return false;
-    const float t = 2.0f * c / below;
-    const vec3 q = w + t * direction;
-    const float r2 = glm::dot(q, q);
-    if (!(r2 <= disc.radius2)) return false;
-    meeting.depth = nearest + t;
-    meeting.weight = std::exp(-2.0f * r2 / disc.radius2);
-    meeting.normal = disc.normal + disc.curvature * q;
-    return meeting.depth > 0.0f;
-  }
-
-  void draw(int x0, int y0, std::span<const std::uint32_t> mine, const TileSamples& samples) {
-    const std::size_t count = samples.place.size();
-    thread_local std::vector<Meeting> meetings;
-    meetings.clear();
-    std::vector<float> nearest(count, std::numeric_limits<float>::infinity());
-    // First pass: the depth of the nearest surfel; what was met is kept for the second.
-    for (const std::uint32_t i : mine) {
-      const Disc& disc = discs_[i];
-      const int first_x = std::max(disc.x0 - x0, 0), last_x = std::min(disc.x1 - x0, kTile - 1);
-      for (int y = std::max(disc.y0 - y0, 0); y <= std::min(disc.y1 - y0, kTile - 1); ++y)
-        for (std::uint32_t s = samples.start[static_cast<std::size_t>(y * kTile + first_x)];
-             s < samples.start[static_cast<std::size_t>(y * kTile + last_x + 1)]; ++s) {
-          const vec2 place = samples.place[s];
-          const vec3 origin = camera_.perspective ? vec3{0} : vec3{place, 0};
-          const vec3 direction = camera_.perspective ? vec3{place, 1} : vec3{0, 0, 1};
-          Meeting meeting;
-          if (!meet(disc, origin, direction, 1.0f / glm::dot(direction, direction), meeting)) continue;
-          meeting.sample = s;
-          meeting.disc = i;
-          meetings.push_back(meeting);
-          nearest[s] = std::min(nearest[s], meeting.depth);
-        }
-    }
-    // Second pass: eq. 2 over those within epsilon of it.
-    struct Sum {
-      vec3 normal{0};
-      float depth = 0, weight = 0, last = 0;
-    };
-    std::vector<Sum> sums(count);
-    for (const Meeting& meeting : meetings) {
-      const vec2 place = samples.place[meeting.sample];
-      const float length = camera_.perspective ? std::sqrt(1.0f + glm::dot(place, place)) : 1.0f;
-      Sum& sum = sums[meeting.sample];
-      sum.last = std::max(sum.last, meeting.depth * length);
-      if ((meeting.depth - nearest[meeting.sample]) * length > epsilon_) continue;
-      sum.normal += meeting.weight * (normals_.empty() ? meeting.normal : normals_[meeting.disc]);
-      sum.depth += meeting.weight * meeting.depth * length;
-      sum.weight += meeting.weight;
-    }
+  void draw(int x0, int y0, std::span<const std::uint32_t> mine, TileSamples& samples) {
+    const SurfelSamples sums = samples.arrays(camera_.perspective);
+    draw_surfels({x0, y0, camera_.perspective, normals_.empty(), epsilon_, discs_, mine}, sums);
     const View& view = camera_.view;
-    for (std::size_t s = 0; s < count; ++s) {
-      const Sum& sum = sums[s];
-      const float size = glm::length(sum.normal);
-      if (!(sum.weight > 0.0f) || !(size > 0.0f)) continue;
+    for (std::size_t s = 0; s < sums.count; ++s) {
+      const vec3 sum{sums.nx[s], sums.ny[s], sums.nz[s]};
+      const float size = glm::length(sum);
+      if (!(sums.weight[s] > 0.0f) || !(size > 0.0f)) continue;
       const std::size_t target = samples.target[s];
-      const vec2 place = samples.place[s];
-      const vec3 n = sum.normal * (from_inside_ ? -1.0f : 1.0f);
-      out_.depth[target] = sum.depth / sum.weight;
+      const vec3 n = sum * (from_inside_ ? -1.0f : 1.0f);
+      out_.depth[target] = sums.depth[s] / sums.weight[s];
       out_.normal[target] =
-          glm::normalize(normals_.empty() ? n.x * view.right + n.y * view.up + n.z * view.forward : sum.normal);
+          glm::normalize(normals_.empty() ? n.x * view.right + n.y * view.up + n.z * view.forward : sum);
       out_.coverage[target] = 1.0f;
-      out_.entry[target] = nearest[s] * (camera_.perspective ? std::sqrt(1.0f + glm::dot(place, place)) : 1.0f);
-      out_.exit[target] = sum.last;
+      out_.entry[target] = sums.nearest[s] * sums.length[s];
+      out_.exit[target] = sums.last[s] * sums.length[s];
     }
   }
 
@@ -297,7 +269,7 @@ class Splat {
   std::span<const vec2> points_;
   SurfaceBuffers& out_;
   int tiles_x_, tiles_y_;
-  std::vector<Disc> discs_;
+  std::vector<SurfelDisc> discs_;
   std::span<const vec3> normals_;
 };
 

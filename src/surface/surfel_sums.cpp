@@ -59,7 +59,7 @@ struct CubicSplineSlopes {
 
 template <class Slopes, bool kCurvature>
 HWY_INLINE void sum(const RaycastField& field, const PacketList& list, const PacketPoints& points,
-                    const PacketPoints* normals, IsoSums& sums) {
+                    const PacketTangents* tangents, IsoSums& sums) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const float h = field.options.smoothing_length;
@@ -67,10 +67,13 @@ HWY_INLINE void sum(const RaycastField& field, const PacketList& list, const Pac
   const Vec scale = hn::Set(d, field.scale), slope_scale = hn::Set(d, 2.0f * field.scale / (h * h));
   for (int l = 0; l < kPacket; l += lanes) {
     const Vec px = hn::Load(d, points.x + l), py = hn::Load(d, points.y + l), pz = hn::Load(d, points.z + l);
-    Vec nx = px, ny = px, nz = px;
-    if (kCurvature)
-      nx = hn::Load(d, normals->x + l), ny = hn::Load(d, normals->y + l), nz = hn::Load(d, normals->z + l);
-    Vec density = hn::Zero(d), gx = density, gy = density, gz = density, bend = density;
+    Vec tx = px, ty = px, tz = px, ux = px, uy = px, uz = px;
+    if (kCurvature) {
+      tx = hn::Load(d, tangents->t.x + l), ty = hn::Load(d, tangents->t.y + l), tz = hn::Load(d, tangents->t.z + l);
+      ux = hn::Load(d, tangents->u.x + l), uy = hn::Load(d, tangents->u.y + l), uz = hn::Load(d, tangents->u.z + l);
+    }
+    Vec density = hn::Zero(d), gx = density, gy = density, gz = density;
+    Vec even = density, tt = density, uu = density, tu = density;
     for (std::size_t j = 0; j < list.count; ++j) {
       const Vec x = hn::Sub(px, hn::Set(d, list.x.data()[j])), y = hn::Sub(py, hn::Set(d, list.y.data()[j])),
                 z = hn::Sub(pz, hn::Set(d, list.z.data()[j]));
@@ -83,10 +86,14 @@ HWY_INLINE void sum(const RaycastField& field, const PacketList& list, const Pac
       gy = hn::MulAdd(first, y, gy);
       gz = hn::MulAdd(first, z, gz);
       if (kCurvature) {
-        // laplacian - n . H n = 4 / h^2 sum m (s' + s'' (a - (d . n)^2 / h^2))
-        const Vec along = hn::MulAdd(x, nx, hn::MulAdd(y, ny, hn::Mul(z, nz)));
-        const Vec across = hn::NegMulAdd(hn::Mul(along, along), per_h2, a);
-        bend = hn::Add(bend, hn::MulAdd(hn::Mul(s.second, mass), across, first));
+        // t H t = 2 / h^2 sum m (s' + 2 s'' (d . t)^2 / h^2), and so on
+        const Vec t = hn::MulAdd(x, tx, hn::MulAdd(y, ty, hn::Mul(z, tz)));
+        const Vec u = hn::MulAdd(x, ux, hn::MulAdd(y, uy, hn::Mul(z, uz)));
+        const Vec second = hn::Mul(s.second, mass);
+        even = hn::Add(even, first);
+        tt = hn::MulAdd(hn::Mul(second, t), t, tt);
+        uu = hn::MulAdd(hn::Mul(second, u), u, uu);
+        tu = hn::MulAdd(hn::Mul(second, t), u, tu);
       }
     }
     gx = hn::Mul(gx, slope_scale);
@@ -98,31 +105,35 @@ HWY_INLINE void sum(const RaycastField& field, const PacketList& list, const Pac
     hn::Store(gz, d, sums.gz + l);
     if (kCurvature) {
       const Vec size = hn::Sqrt(hn::MulAdd(gx, gx, hn::MulAdd(gy, gy, hn::Mul(gz, gz))));
-      hn::Store(hn::Div(hn::Neg(hn::Mul(bend, slope_scale)), hn::Max(size, hn::Set(d, 1e-20f))), d, sums.curvature + l);
+      const Vec per_size = hn::Div(hn::Neg(slope_scale), hn::Max(size, hn::Set(d, 1e-20f)));
+      const Vec two_per_h2 = hn::Add(per_h2, per_h2);
+      hn::Store(hn::Mul(hn::MulAdd(tt, two_per_h2, even), per_size), d, sums.tt + l);
+      hn::Store(hn::Mul(hn::MulAdd(uu, two_per_h2, even), per_size), d, sums.uu + l);
+      hn::Store(hn::Mul(hn::Mul(tu, two_per_h2), per_size), d, sums.tu + l);
     }
   }
 }
 
 template <class Slopes>
 void sum_either(const RaycastField& field, const PacketList& list, const PacketPoints& points,
-                const PacketPoints* normals, IsoSums& sums) {
-  if (normals)
-    sum<Slopes, true>(field, list, points, normals, sums);
+                const PacketTangents* tangents, IsoSums& sums) {
+  if (tangents)
+    sum<Slopes, true>(field, list, points, tangents, sums);
   else
-    sum<Slopes, false>(field, list, points, normals, sums);
+    sum<Slopes, false>(field, list, points, tangents, sums);
 }
 
 }  // namespace
 
 void IsoSumsOf(const RaycastField& field, const PacketList& list, const PacketPoints& points,
-               const PacketPoints* normals, IsoSums& sums) {
+               const PacketTangents* tangents, IsoSums& sums) {
   switch (field.options.kernel) {
     case Kernel::cubic_spline:
-      return sum_either<CubicSplineSlopes>(field, list, points, normals, sums);
+      return sum_either<CubicSplineSlopes>(field, list, points, tangents, sums);
     case Kernel::poly6:
-      return sum_either<Poly6Slopes>(field, list, points, normals, sums);
+      return sum_either<Poly6Slopes>(field, list, points, tangents, sums);
     case Kernel::wyvill:
-      return sum_either<WyvillSlopes>(field, list, points, normals, sums);
+      return sum_either<WyvillSlopes>(field, list, points, tangents, sums);
   }
 }
 
@@ -136,8 +147,8 @@ namespace meniscus {
 HWY_EXPORT(IsoSumsOf);
 
 void iso_sums(const RaycastField& field, const PacketList& list, const PacketPoints& points,
-              const PacketPoints* normals, IsoSums& sums) {
-  HWY_DYNAMIC_DISPATCH(IsoSumsOf)(field, list, points, normals, sums);
+              const PacketTangents* tangents, IsoSums& sums) {
+  HWY_DYNAMIC_DISPATCH(IsoSumsOf)(field, list, points, tangents, sums);
 }
 
 }  // namespace meniscus

@@ -1,4 +1,4 @@
-/// Density, its gradient and the curvature of its iso-surface at sixteen points; compiled once for each instruction
+/// Density, its gradient and the curvatures of its iso-surface at sixteen points; compiled once for each instruction
 /// set.
 #pragma once
 
@@ -11,13 +11,20 @@ struct IsoSums {
   alignas(64) float gx[kPacket];       ///< gradient of the density, 1/m
   alignas(64) float gy[kPacket];
   alignas(64) float gz[kPacket];
-  alignas(64) float curvature[kPacket];  ///< mean curvature, 1/m, > 0 where the water bulges; see iso_sums()
+  /// Curvature in a frame of two tangents t, u: t K t, u K u and t K u, 1/m, > 0 where the water bulges; see iso_sums()
+  alignas(64) float tt[kPacket];
+  alignas(64) float uu[kPacket];
+  alignas(64) float tu[kPacket];
+};
+
+/// Two unit vectors along the surface, across each other.
+struct PacketTangents {
+  PacketPoints t, u;
 };
 
 /// Sums over the list at all sixteen points.
-/// @param normals  null: no curvature. Else unit vectors n out of the water, and the curvature is half the divergence
-///                 of the normals, -(laplacian - n . H n) / (2 |gradient|) with H the second derivatives.
+/// @param tangents  null: no curvature. Else K = -H / |gradient| with the second derivatives H of the density.
 void iso_sums(const RaycastField& field, const PacketList& list, const PacketPoints& points,
-              const PacketPoints* normals, IsoSums& sums);
+              const PacketTangents* tangents, IsoSums& sums);
 
 }  // namespace meniscus
