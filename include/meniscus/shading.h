@@ -80,6 +80,9 @@ struct CausticsOptions {
   int iterations = 8;       ///< of the intersection with the geometry map, 1 .. 256
   float threshold = 0;      ///< m; 0: half a pixel of the geometry map
   bool exact_hits = false;  ///< refracted light meets the scene by ray, not in the geometry map
+  /// Light that has entered the water stays in it, as published. Else light that leaves drops, sheets and the sides of
+  /// the water is followed through the air, where the surface can be marched.
+  bool single_interface = false;
   /// Texels along the longer side of the map that the triangles are drawn into; 0: two to a point of the screen, at
   /// most 1024.
   int map_size = 0;
@@ -98,6 +101,7 @@ std::shared_ptr<const WaterLight> caustics(const Surface& surface, const Scene& 
 struct CausticsReport {
   std::size_t triangles = 0;
   double entered = 0, absorbed = 0, landed = 0;  ///< power of all channels together, W
+  double mirrored = 0;  ///< lost at later interfaces or not followed further, W
   double psnr_db = 0;       ///< of the first map against photons; white is four times the photons' mean
   double reference_ms = 0;  ///< of the photons
 };

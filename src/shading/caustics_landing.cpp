@@ -35,14 +35,16 @@ class Lander {
     const Bounds box = surface.bounds();
     shallow_ = kShallow * glm::length(box.extent());
     // Surfaces that know no thickness say nothing: then no drop can be told from the pool.
-    for (const float t : screen.seen.thickness) thin_known_ = thin_known_ || t > 0;
+    if (!options.single_interface && !surface.can_march())
+      thin_known_ =
+          std::any_of(screen.seen.thickness.begin(), screen.seen.thickness.end(), [](float t) { return t > 0; });
   }
 
   Landing land(int x, int y) const {
     Landing landing;
-    if (!screen_.is_wet(x, y)) return landing;
     landing.state = LandingState::lost;
-    landing.from = screen_.point(x, y);
+    landing.covered = screen_.seen.coverage(x, y);
+    landing.from = landing.exit = screen_.point(x, y);
     const vec3 normal = glm::normalize(screen_.seen.normal(x, y));
     const vec3 to_light = light_.towards(landing.from);
     landing.cos_i = glm::dot(normal, to_light);
@@ -51,24 +53,27 @@ class Lander {
     // Snell and Fresnel.
     const formulas::Interface interface = formulas::fresnel(landing.cos_i, material_.ior);
     landing.transmittance = 1.0f - std::min(1.0f, interface.reflectance * material_.specular);
-    const Ray ray{landing.from, formulas::refracted(-to_light, normal, material_.ior, interface.cos_t)};
-    if (!meet(ray, landing)) return landing;
+    landing.direction = formulas::refracted(-to_light, normal, material_.ior, interface.cos_t);
+    if (solids_ &&
+        (light_.sun ? scene_.shadowed(landing.from, to_light) : scene_.blocked(landing.from, light_.position)))
+      landing.transmittance = 0;
+    if (!meet({landing.from, landing.direction}, landing)) return landing;
     landing.path = glm::length(landing.point - landing.from);
 
     // A drop in the air: the light leaves it at its far side and goes on as it came.
-    const float down = glm::dot(landing.from - landing.point, screen_.up);
-    const float steepness = std::abs(glm::dot(screen_.ray(x, y).direction, screen_.up));
-    const float thickness = thin_known_ ? screen_.seen.thickness(x, y) : kInfinity;
-    if (down > shallow_ && steepness > 0.05f && thickness < kThin * down / steepness) {
-      landing.left = true;
-      if (!meet({landing.from, -to_light}, landing)) return landing;
-      landing.transmittance *= landing.transmittance;
-      landing.path = thickness;
+    if (thin_known_) {
+      const float down = glm::dot(landing.from - landing.point, screen_.up);
+      const float steepness = std::abs(glm::dot(screen_.ray(x, y).direction, screen_.up));
+      const float thickness = screen_.seen.thickness(x, y);
+      if (down > shallow_ && steepness > 0.05f && thickness < kThin * down / steepness) {
+        landing.way = 1;
+        landing.direction = -to_light;
+        if (!meet({landing.from, -to_light}, landing)) return landing;
+        landing.later = landing.transmittance;
+        landing.path = thickness;
+      }
     }
-    landing.passed = landing.transmittance * formulas::beer_lambert(extinction_, landing.path);
-    if (solids_ &&
-        (light_.sun ? scene_.shadowed(landing.from, to_light) : scene_.blocked(landing.from, light_.position)))
-      landing.passed = vec3{0.0f};
+    landing.passed = landing.transmittance * landing.later * formulas::beer_lambert(extinction_, landing.path);
     landing.state = LandingState::landed;
     return landing;
   }
@@ -151,8 +156,11 @@ Image<Landing> land(const VirtualScreen& screen, const Surface& surface, const L
   Image<Landing> landings(screen.width, screen.height);
   parallel_for(static_cast<std::size_t>(screen.height), 8, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < screen.width; ++x) landings(x, y) = lander.land(x, y);
+      for (int x = 0; x < screen.width; ++x)
+        if (screen.is_wet(x, y)) landings(x, y) = lander.land(x, y);
   });
+  if (surface.can_march() && !options.single_interface && material.transparent)
+    follow(screen, surface, scene, material, landings);
   return landings;
 }
 

@@ -26,23 +26,30 @@ struct SceneMap {
 SceneMap see_solids(const View& view, const Scene& scene, FunctionRef<float(const Ray&)> from);
 
 enum class LandingState : std::uint8_t {
-  dry,     ///< no water
-  lost,    ///< the light enters and meets no solid, or none enters
-  landed,  ///< `point` and what follows are valid
+  dry,      ///< no water
+  lost,     ///< the light enters and meets no solid, or none enters
+  trapped,  ///< the light enters and does not come out of the water again: it is not followed further
+  landed,   ///< `point` and what follows are valid
 };
 
 /// One point of the screen: its light's way through the water.
 struct Landing {
-  vec3 from{0.0f};    ///< s of the paper, on the water, m
-  vec3 point{0.0f};   ///< c of the paper, on a solid, m
-  vec3 normal{0.0f};  ///< unit, of the solid's flat face, against the light
-  vec3 passed{
-      0.0f};        ///< of the light that arrives at s the part that arrives at c: T exp(-sigma_t l_c), or 0 in shadow
-  float cos_i = 0;  ///< of the light with the water's normal
+  vec3 from{0.0f};       ///< s of the paper, on the water, m
+  vec3 point{0.0f};      ///< c of the paper, on a solid, m
+  vec3 normal{0.0f};     ///< unit, of the solid's flat face, against the light
+  vec3 direction{0.0f};  ///< unit, of the light as it arrives
+  /// Of the light that arrives at s the part that arrives at c: T exp(-sigma_t l_c), or 0 in shadow; of light that
+  /// leaves the water, times `later`.
+  vec3 passed{0.0f};
+  vec3 exit{0.0f};          ///< where the light first leaves the water, m; `from` if it does not
+  float cos_i = 0;          ///< of the light with the water's normal
   float transmittance = 0;  ///< T of the paper
+  float later = 1;          ///< what interfaces after the first leave of the light
   float path = 0;           ///< l_c of the paper: in water, m
+  float covered = 1;        ///< part of the point's square that has water
   LandingState state = LandingState::dry;
-  bool left = false;  ///< the light leaves the water again before it lands: drops and spray
+  /// 0: by one interface; else one number for one kind of way: out, mirrored and in again in this order.
+  std::uint16_t way = 0;
 };
 
 /// The light's loss in the water, 1/m: what is scattered goes mostly forward.
@@ -52,6 +59,14 @@ vec3 caustics_extinction(const Material& material);
 /// @return     of the screen's size
 Image<Landing> land(const VirtualScreen& screen, const Surface& surface, const LightSource& light, const Scene& scene,
                     const Material& material, const SceneMap* map, const CausticsOptions& options);
+
+/// Follows light that leaves the water before it lands: out at the far side or mirrored there once, through the air
+/// into the next water or onto a solid. What has met its last interface goes on straight; light that would be mirrored
+/// twice is trapped. Ways in which the water ends within about a spacing of the solid stay as they are.
+/// (caustics_follow.cpp)
+/// @param surface  one that can be marched
+void follow(const VirtualScreen& screen, const Surface& surface, const Scene& scene, const Material& material,
+            Image<Landing>& landings);
 
 /// Eq. 3 of the paper as it stands, with the flux ratio of one triangle.
 /// @param flux_ratio   F_c = S / S_c, the triangle's area on the water by that on the solid

@@ -29,20 +29,30 @@ class CausticsMap {
   View view_;
   Image<vec3> seen_, behind_;
   SceneMap solids_;
+  vec2 first_{0.0f};  ///< of the texels' corner in the picture of the solids, px
+  float scale_ = 1;   ///< pixels of that picture to a texel
 };
 
 /// Where the light of one source arrives unbent: not behind points of the water that its caustics are drawn from.
 class UnbentLight {
  public:
-  /// @param view   from the light
-  /// @param depth  of the water along the view, m; +infinity: none
-  UnbentLight(const View& view, Image<float> depth) : view_(view), depth_(std::move(depth)) {}
-  /// The fraction that arrives, [0, 1].
+  /// @param view      from the light
+  /// @param depth     of the water along the view, m; +infinity: none
+  /// @param coverage  part of each pixel that has water
+  UnbentLight(const View& view, Image<float> depth, Image<float> coverage);
+  /// The fraction that arrives, [0, 1]: what the water leaves free of the pixels around, by a cubic B-spline, so that
+  /// its border is as soft as that of the caustics.
   float fraction(vec3 point) const;
 
  private:
+  /// Of the 4 x 4 pixels around the square between pixel centres (x, y) and (x + 1, y + 1).
+  struct Around {
+    float nearest = std::numeric_limits<float>::infinity();      ///< water, m
+    float closed_from = std::numeric_limits<float>::infinity();  ///< all light is gone from here on, m
+  };
   View view_;
-  Image<float> depth_;
+  Image<float> depth_, coverage_;
+  Image<Around> around_;
 };
 
 /// All that one light casts, with what it was made from.

@@ -8,7 +8,7 @@
 namespace meniscus {
 
 Image<vec3> photon_map(const Surface& surface, const LightCast& cast, const Scene& scene, const Material& material,
-                       int finer) {
+                       int finer, bool single_interface) {
   if (cast.maps.empty()) return {};
   const CausticsMap& map = cast.maps.front();
   const View& view = map.view();
@@ -20,7 +20,12 @@ Image<vec3> photon_map(const Surface& surface, const LightCast& cast, const Scen
   screen.height = screen.view.height;
   screen.up = cast.screen.up;
   screen.seen = surface.see(screen.view);
-  const Image<Landing> landings = land(screen, surface, cast.light, scene, material, nullptr, {});
+  for (std::size_t i = 0; i < screen.seen.coverage.size(); ++i)
+    screen.seen.coverage[i] = screen.seen.coverage[i] > 0.5f && std::isfinite(screen.seen.depth[i]) &&
+                              glm::dot(screen.seen.normal[i], screen.seen.normal[i]) > 0.25f;
+  CausticsOptions options;
+  options.single_interface = single_interface;
+  const Image<Landing> landings = land(screen, surface, cast.light, scene, material, nullptr, options);
 
   Image<vec3> texels(view.width, view.height);
   const float texel = view.pixel_size(0.0f), per_area = 1.0f / (texel * texel);
@@ -38,7 +43,7 @@ Image<vec3> photon_map(const Surface& surface, const LightCast& cast, const Scen
       const int i = static_cast<int>(std::floor(at.x)), j = static_cast<int>(std::floor(at.y));
       if (i >= 0 && j >= 0 && i < view.width && j < view.height) texels(i, j) += power * per_area;
     }
-  blur(texels, cast.smooth_px);
+  blur_finely(texels, cast.smooth_px);
   return texels;
 }
 

@@ -12,6 +12,9 @@ namespace {
 constexpr int kBandRows = 16;
 /// Polygons of a smaller area, texels^2, are drawn as lines: their covered areas would be noise of rounding.
 constexpr double kSliver = 1e-5;
+/// Texels along a side of what is drawn in floats; the doubled area from which on their rounding does no harm.
+constexpr int kSmall = 8;
+constexpr float kSmallSliver = 1e-2f;
 
 /// Adds to one row: coverage as differences along x, so that the prefix sum is the covered area of each texel.
 class Row {
@@ -122,7 +125,84 @@ void draw_line(const LightPolygon& polygon, Image<vec3>& image, int top, int bot
   }
 }
 
+/// Polygons in a few texels, of which there are most: the same sums in floats beside their first texel.
+/// @return  false: too large, or beside the image
+bool draw_small(const LightPolygon& light, Image<vec3>& image, int top, int bottom) {
+  const int corners = light.corners;
+  vec2 low = light.corner[0], high = low;
+  for (int i = 1; i < corners; ++i) {
+    low = glm::min(low, light.corner[i]);
+    high = glm::max(high, light.corner[i]);
+  }
+  if (!(low.x >= 0 && low.y >= 0 && high.x < static_cast<float>(image.width()) &&
+        high.y < static_cast<float>(image.height())))
+    return false;
+  const int x0 = static_cast<int>(low.x), y0 = static_cast<int>(low.y);
+  const int columns = static_cast<int>(high.x) - x0 + 1, rows = static_cast<int>(high.y) - y0 + 1;
+  if (columns > kSmall || rows > kSmall) return false;
+  const vec2 base{static_cast<float>(x0), static_cast<float>(y0)};
+  vec2 corner[4];
+  for (int i = 0; i < corners; ++i) corner[i] = light.corner[i] - base;
+  float doubled = 0;
+  for (int i = 1; i + 1 < corners; ++i) {
+    const vec2 u = corner[i] - corner[0], v = corner[i + 1] - corner[0];
+    doubled += u.x * v.y - u.y * v.x;
+  }
+  if (!(std::abs(doubled) > kSmallSliver)) return false;
+  const vec3 per_area = light.flux * (2.0f / doubled);
+
+  // Differences along x of the covered area, one row for each of the texels.
+  float difference[kSmall][kSmall + 1] = {};
+  for (int i = 0; i < corners; ++i) {
+    const vec2 a = corner[i], b = corner[i + 1 < corners ? i + 1 : 0];
+    const float sign = a.y < b.y ? 1.0f : -1.0f;
+    const vec2 upper = a.y < b.y ? a : b, lower = a.y < b.y ? b : a;
+    const float height = lower.y - upper.y;
+    if (!(height > 0)) continue;
+    const float slope = (lower.x - upper.x) / height;
+    const float left_end = std::min(a.x, b.x), right_end = std::max(a.x, b.x);
+    const auto x_at = [&](float y) { return std::clamp(upper.x + slope * (y - upper.y), left_end, right_end); };
+    float from = upper.y, x = upper.x;
+    for (int y = static_cast<int>(from); from < lower.y; ++y) {
+      const float to = std::min(lower.y, static_cast<float>(y + 1)), x_to = to < lower.y ? x_at(to) : lower.x;
+      const float dy = sign * (to - from), left = std::min(x, x_to), right = std::max(x, x_to);
+      float* row = difference[y];
+      const int c0 = static_cast<int>(left), c1 = static_cast<int>(right);
+      if (c0 == c1) {
+        const float middle = 0.5f * (left + right) - static_cast<float>(c0);
+        row[c0] += dy * (1.0f - middle);
+        row[c0 + 1] += dy * middle;
+      } else {
+        const float rise = dy / (right - left);
+        float before = 0;
+        for (int c = c0; c <= c1; ++c) {
+          const float at = static_cast<float>(c);
+          const float p = std::max(left, at), q = std::min(right, at + 1.0f);
+          const float risen = rise * (p - left), rising = rise * (q - p);
+          const float area = (risen + 0.5f * rising) * (q - p) + (risen + rising) * (at + 1.0f - q);
+          row[c] += area - before;
+          before = area;
+        }
+        row[c1 + 1] += dy - before;
+      }
+      from = to;
+      x = x_to;
+    }
+  }
+  // One sign for all edges: with `doubled` positive the edges on the right go down.
+  for (int y = std::max(0, top - y0); y < std::min(rows, bottom - y0); ++y) {
+    vec3* texels = image.row(y0 + y) + x0;
+    float sum = 0;
+    for (int c = 0; c < columns; ++c) {
+      sum += difference[y][c];
+      texels[c] -= sum * per_area;
+    }
+  }
+  return true;
+}
+
 void draw(const LightPolygon& light, Image<vec3>& image, int top, int bottom, Row& row) {
+  if (draw_small(light, image, top, bottom)) return;
   Polygon polygon;
   polygon.corners = light.corners;
   std::copy(light.corner, light.corner + light.corners, polygon.corner);

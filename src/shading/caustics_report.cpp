@@ -16,6 +16,7 @@ CausticsReport measure_caustics(const Surface& surface, const Scene& scene, cons
   report.triangles = cast.balance.triangles;
   report.entered = cast.balance.entered;
   report.absorbed = cast.balance.absorbed;
+  report.mirrored = cast.balance.mirrored + cast.balance.trapped;
   report.landed = cast.balance.drawn + cast.balance.hidden + cast.balance.grazing;
   if (finer <= 0 || cast.maps.empty()) return report;
 
@@ -23,7 +24,7 @@ CausticsReport measure_caustics(const Surface& surface, const Scene& scene, cons
   Image<vec3> photons;
   {
     const StageTimer timer(&reference, "reference");
-    photons = photon_map(surface, cast, scene, material, finer);
+    photons = photon_map(surface, cast, scene, material, finer, options.single_interface);
   }
   report.reference_ms = reference.total_ms();
   const auto grey = [](vec3 v) {

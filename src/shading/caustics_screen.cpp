@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 
 namespace meniscus {
 namespace {
@@ -12,6 +13,62 @@ constexpr int kDefaultSize = 512;
 constexpr int kBorder = 2;
 /// Cosine with the vertical from which on a screen counts as upright.
 constexpr float kUpright = 0.15f;
+/// Where the squares of points at the water's border are looked at, in steps from the point: a turned square, so that
+/// upright and level edges count finely too.
+constexpr vec2 kPlaces[] = {{-0.375f, -0.125f}, {0.125f, -0.375f}, {0.375f, 0.125f}, {-0.125f, 0.375f}};
+constexpr std::size_t kPlaceCount = std::size(kPlaces);
+
+/// What a surface may say in other words: depths that are not finite, normals without length.
+bool has_water(const SurfaceBuffers& seen, std::size_t i) {
+  const vec3 normal = seen.normal[i];
+  return seen.coverage[i] > 0.5f && std::isfinite(seen.depth[i]) && glm::dot(normal, normal) > 0.25f &&
+         !seen.eye_in_water;
+}
+
+/// Counts how much of the squares of points at the water's border has water, where the points are the view's pixels.
+void look_at_border(const Surface& surface, VirtualScreen& screen) {
+  std::vector<std::size_t> border;
+  std::vector<vec2> places;
+  Image<float>& coverage = screen.seen.coverage;
+  for (int y = 0; y < screen.height; ++y)
+    for (int x = 0; x < screen.width; ++x) {
+      const float here = coverage(x, y);
+      bool differs = false;
+      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, screen.height - 1); ++v)
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, screen.width - 1); ++u)
+          differs = differs || coverage(u, v) != here;
+      if (!differs) continue;
+      border.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(screen.width) +
+                       static_cast<std::size_t>(x));
+      for (const vec2 place : kPlaces) places.push_back(screen.picture(x, y) + place * screen.step);
+    }
+  if (border.empty()) return;
+  const SurfaceBuffers fine = surface.refine(screen.view, screen.seen, places);
+  const bool thick = fine.thickness.size() == places.size() && !screen.seen.thickness.empty();
+  for (std::size_t b = 0; b < border.size(); ++b) {
+    float wet = 0, depth = 0, thickness = 0;
+    vec3 normal{0.0f};
+    for (std::size_t k = b * kPlaceCount; k < (b + 1) * kPlaceCount; ++k) {
+      if (!has_water(fine, k)) continue;
+      wet += 1;
+      depth += fine.depth[k];
+      normal += glm::normalize(fine.normal[k]);
+      if (thick) thickness += fine.thickness[k];
+    }
+    const std::size_t i = border[b];
+    const bool was_wet = coverage[i] > 0;
+    coverage[i] = wet / static_cast<float>(kPlaceCount);
+    if (was_wet || !(wet > 0)) continue;
+    const float length = glm::length(normal);
+    if (!(length > 0.1f * wet)) {
+      coverage[i] = 0;
+      continue;
+    }
+    screen.seen.depth[i] = depth / wet;
+    screen.seen.normal[i] = normal / length;
+    if (thick) screen.seen.thickness[i] = thickness / wet;
+  }
+}
 
 }  // namespace
 
@@ -69,14 +126,10 @@ VirtualScreen see_screen(const Surface& surface, const LightSource& light, const
     shaped(screen.seen.thickness);
     shaped(screen.seen.coverage);
   }
-  // What a surface may say in other words: depths that are not finite, normals without length.
-  for (std::size_t i = 0; i < screen.seen.depth.size(); ++i) {
-    const vec3 normal = screen.seen.normal[i];
-    const bool wet = screen.seen.coverage[i] > 0.5f && std::isfinite(screen.seen.depth[i]) &&
-                     glm::dot(normal, normal) > 0.25f && !screen.seen.eye_in_water;
-    screen.seen.coverage[i] = wet ? 1.0f : 0.0f;
-    screen.wet += wet;
-  }
+  SurfaceBuffers& seen = screen.seen;
+  for (std::size_t i = 0; i < seen.depth.size(); ++i) seen.coverage[i] = has_water(seen, i) ? 1.0f : 0.0f;
+  if (!seen.eye_in_water && screen.step == vec2{1.0f}) look_at_border(surface, screen);
+  for (const float coverage : seen.coverage) screen.wet += coverage > 0;
   return screen;
 }
 

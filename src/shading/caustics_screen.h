@@ -11,9 +11,11 @@ struct VirtualScreen {
   View view;      ///< square pixels
   int width = 0;  ///< points, which need not be the view's pixels
   int height = 0;
-  vec2 step{1.0f};      ///< px of the view between neighbouring points
-  vec3 up{0, 1, 0};     ///< of the scene, unit
-  SurfaceBuffers seen;  ///< at the points
+  vec2 step{1.0f};   ///< px of the view between neighbouring points
+  vec3 up{0, 1, 0};  ///< of the scene, unit
+  /// At the points; `coverage` is the part of the point's square that has water. Where the points are the view's pixels
+  /// it is counted at the border at places between the points, and a point beside the water shows the water of those.
+  SurfaceBuffers seen;
   std::size_t wet = 0;  ///< points with water
 
   /// The picture point of point (x, y).
@@ -21,7 +23,7 @@ struct VirtualScreen {
     return {(static_cast<float>(x) + 0.5f) * step.x, (static_cast<float>(y) + 0.5f) * step.y};
   }
   Ray ray(int x, int y) const { return view.ray(picture(x, y)); }
-  bool is_wet(int x, int y) const { return seen.coverage(x, y) > 0.5f; }
+  bool is_wet(int x, int y) const { return seen.coverage(x, y) > 0; }
   /// The point on the water, m.
   vec3 point(int x, int y) const;
   /// Where the ray of point (x, y) meets the plane through `level` that is horizontal, or faces a screen that stands
@@ -29,7 +31,7 @@ struct VirtualScreen {
   vec3 beside(int x, int y, vec3 level) const;
 };
 
-/// Looks at the water through a screen that holds `box`.
+/// Looks at the water through a screen that holds `box`, and at its border more closely.
 VirtualScreen see_screen(const Surface& surface, const LightSource& light, const Bounds& box, vec3 up,
                          const CausticsOptions& options, StageTimes* times = nullptr);
 

@@ -10,10 +10,12 @@ namespace meniscus {
 struct LightBalance {
   double entered = 0;  ///< met the water, after Fresnel reflection and solids before it
   double absorbed = 0;
-  double drawn = 0;    ///< in polygons of the map
-  double hidden = 0;   ///< landed behind what the map's view sees first
-  double grazing = 0;  ///< landed where the map's view looks along or from behind
-  double lost = 0;     ///< met no solid
+  double mirrored = 0;  ///< by later interfaces, out of the way that is followed
+  double trapped = 0;   ///< not followed further in the water
+  double drawn = 0;     ///< in polygons of the map
+  double hidden = 0;    ///< landed behind what the map's view sees first
+  double grazing = 0;   ///< landed where the map's view looks along or from behind
+  double lost = 0;      ///< met no solid
   std::size_t triangles = 0, shards = 0;
 
   void add(const LightBalance& other);

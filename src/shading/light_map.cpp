@@ -8,19 +8,29 @@
 namespace meniscus {
 namespace {
 
-/// Running mean over 2 radius + 1 values of a line whose values stand `stride` apart.
+/// Columns that are blurred at once: lines of a picture lie far apart in memory.
+constexpr std::size_t kColumns = 32;
+
+/// Running mean over 2 radius + 1 values of `lanes` lines side by side; the values of a line stand `stride` apart.
 template <class T>
-void box_line(T* values, int count, std::ptrdiff_t stride, int radius, std::vector<T>& line) {
-  line.resize(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) line[static_cast<std::size_t>(i)] = values[i * stride];
-  const auto at = [&](int i) { return line[static_cast<std::size_t>(std::clamp(i, 0, count - 1))]; };
-  T sum{};
-  for (int i = -radius; i <= radius; ++i) sum += at(i);
+void box_lines(T* values, int count, std::size_t lanes, std::ptrdiff_t stride, int radius, std::vector<T>& lines) {
+  lines.resize(static_cast<std::size_t>(count) * lanes);
+  for (int i = 0; i < count; ++i)
+    std::copy(values + i * stride, values + i * stride + lanes, &lines[static_cast<std::size_t>(i) * lanes]);
+  const auto at = [&](int i) { return &lines[static_cast<std::size_t>(std::clamp(i, 0, count - 1)) * lanes]; };
+  T sum[kColumns]{};
+  for (int i = -radius; i <= radius; ++i)
+    for (std::size_t k = 0; k < lanes; ++k) sum[k] += at(i)[k];
   const float scale = 1.0f / static_cast<float>(2 * radius + 1);
   for (int i = 0; i < count; ++i) {
-    values[i * stride] = sum * scale;
-    sum += at(i + radius + 1);
-    sum -= at(i - radius);
+    T* here = values + i * stride;
+    const T* next = at(i + radius + 1);
+    const T* last = at(i - radius);
+    for (std::size_t k = 0; k < lanes; ++k) {
+      here[k] = sum[k] * scale;
+      sum[k] += next[k];
+      sum[k] -= last[k];
+    }
   }
 }
 
@@ -33,12 +43,11 @@ void blur_any(Image<T>& image, float sigma_px) {
   parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
     std::vector<T> line;
     for (std::size_t y = begin; y < end; ++y)
-      for (int pass = 0; pass < 3; ++pass) box_line(image.row(static_cast<int>(y)), width, 1, radius, line);
+      for (int pass = 0; pass < 3; ++pass) box_lines(image.row(static_cast<int>(y)), width, 1, 1, radius, line);
   });
-  parallel_for(static_cast<std::size_t>(width), 16, [&](std::size_t begin, std::size_t end) {
-    std::vector<T> line;
-    for (std::size_t x = begin; x < end; ++x)
-      for (int pass = 0; pass < 3; ++pass) box_line(image.data() + x, height, width, radius, line);
+  parallel_for(static_cast<std::size_t>(width), kColumns, [&](std::size_t begin, std::size_t end) {
+    std::vector<T> lines;
+    for (int pass = 0; pass < 3; ++pass) box_lines(image.data() + begin, height, end - begin, width, radius, lines);
   });
 }
 
@@ -46,6 +55,51 @@ void blur_any(Image<T>& image, float sigma_px) {
 
 void blur(Image<vec3>& image, float sigma_px) { blur_any(image, sigma_px); }
 void blur(Image<float>& image, float sigma_px) { blur_any(image, sigma_px); }
+
+void blur_finely(Image<vec3>& image, float sigma_px) {
+  constexpr float kLargest = 6.0f, kReach = 3.0f;
+  if (!(sigma_px > 0.05f) || image.empty()) return;
+  if (sigma_px > kLargest) return blur(image, sigma_px);
+  const int radius = static_cast<int>(std::ceil(kReach * sigma_px));
+  std::vector<float> weight(static_cast<std::size_t>(2 * radius + 1));
+  float all = 0;
+  for (int k = -radius; k <= radius; ++k) {
+    const float x = static_cast<float>(k) / sigma_px;
+    all += weight[static_cast<std::size_t>(k + radius)] = std::exp(-0.5f * x * x);
+  }
+  for (float& w : weight) w /= all;
+  const int width = image.width(), height = image.height(), values = 3 * width;
+  // Rows without light stay so along x, and are left out along y.
+  std::vector<std::uint8_t> lit(static_cast<std::size_t>(height));
+  parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> line(static_cast<std::size_t>(values + 6 * radius), 0.0f);
+    for (std::size_t y = begin; y < end; ++y) {
+      float* row = &image.row(static_cast<int>(y))->x;
+      lit[y] = std::any_of(row, row + values, [](float v) { return v != 0; });
+      if (!lit[y]) continue;
+      std::copy(row, row + values, line.begin() + 3 * radius);
+      std::fill(row, row + values, 0.0f);
+      for (int k = 0; k <= 2 * radius; ++k) {
+        const float w = weight[static_cast<std::size_t>(k)];
+        const float* from = line.data() + 3 * k;
+        for (int i = 0; i < values; ++i) row[i] += w * from[i];
+      }
+    }
+  });
+  Image<vec3> result(width, height);
+  parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      float* row = &result.row(y)->x;
+      for (int k = -radius; k <= radius; ++k) {
+        if (y + k < 0 || y + k >= height || !lit[static_cast<std::size_t>(y + k)]) continue;
+        const float w = weight[static_cast<std::size_t>(k + radius)];
+        const float* from = &image.row(y + k)->x;
+        for (int i = 0; i < values; ++i) row[i] += w * from[i];
+      }
+    }
+  });
+  image = std::move(result);
+}
 
 LightMap::LightMap(const View& view, Image<Fractions> texels) : texels_(std::move(texels)) {
   const float per_metre = 1.0f / view.pixel_size(0.0f);

@@ -31,5 +31,7 @@ std::shared_ptr<const WaterLight> sky_shadow(const Surface& surface, const Envir
 /// Blurs by three box filters, which come close to a Gaussian; beyond the edge the edge's value goes on.
 void blur(Image<vec3>& image, float sigma_px);
 void blur(Image<float>& image, float sigma_px);
+/// By a Gaussian whatever its width; beyond the edge there is nothing.
+void blur_finely(Image<vec3>& image, float sigma_px);
 
 }  // namespace meniscus
