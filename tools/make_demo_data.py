@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Makes data/dam_break_3d from an output directory of PySPH's example dam_break_3d.
+"""Makes data/dam_break_3d and data/block_drop from output directories of PySPH.
 
-    make_demo_data.py PYSPH_OUTPUT_DIRECTORY data/dam_break_3d
+    make_demo_data.py PYSPH_OUTPUT_DIRECTORY data/dam_break_3d [EVERY]
 
-Each frame keeps /particles/fluid/arrays/{x,y,z,u,v,w} as float32 and the attributes of /solver_data. The first
+EVERY keeps the frames whose number of steps is a multiple of it. Each frame keeps /particles/fluid/arrays/{x,y,z,u,v,w} as float32 and the attributes of /solver_data. The first
 frame also keeps the positions of the boundary and obstacle particles. Values are rounded to steps of a power of
 two near 1e-4 m and 2e-2 m/s, less than a hundredth of the particle spacing and of the largest speeds: the low bits
 of the mantissas are then zero and compress away. Needs h5py and numpy.
@@ -28,7 +28,7 @@ def convert(source, target, first):
     with h5py.File(source) as old, h5py.File(target, "w") as new:
         for name, value in old["solver_data"].attrs.items():
             new.require_group("solver_data").attrs[name] = value
-        for group in ("fluid", "boundary", "obstacle") if first else ("fluid",):
+        for group in ("fluid", "boundary", "obstacle") if first and "obstacle" in old["particles"] else ("fluid",):
             arrays = old[f"particles/{group}/arrays"]
             kept = new.create_group(f"particles/{group}/arrays")
             for name in "xyz":
@@ -41,7 +41,9 @@ def convert(source, target, first):
 def main():
     source, target = map(pathlib.Path, sys.argv[1:3])
     target.mkdir(parents=True, exist_ok=True)
-    frames = sorted(source.glob("dam_break_3d_*.hdf5"), key=lambda path: int(path.stem.rsplit("_", 1)[1]))
+    steps = lambda path: int(path.stem.rsplit("_", 1)[1])
+    every = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+    frames = sorted((path for path in source.glob("*_*.hdf5") if steps(path) % every == 0), key=steps)
     for index, frame in enumerate(frames):
         convert(frame, target / frame.name, index == 0)
     sizes = [path.stat().st_size for path in target.glob("*.hdf5")]
