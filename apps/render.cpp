@@ -51,9 +51,17 @@ SceneFile scene_of(RenderArguments& arguments) {
   SceneFile scene;
   const std::optional<std::string> path = arguments.input.scene_file();
   if (path) scene = read_scene_file(*path);
+  if (path && scene.frames.empty() && !scene.waves)
+    throw Error(ErrorCode::not_found, {"the scene file names no water",
+                                       "\"water\": {\"frames\": ...} or {\"waves\": {...}}",
+                                       {},
+                                       *path,
+                                       {},
+                                       {},
+                                       {}});
   SequenceOptions& sequence = arguments.sequence;
   sequence.output = arguments.output.empty() ? scene.output : arguments.output;
-  if (sequence.output.empty()) throw UsageError("-o FILE is needed: where the picture goes");
+  if (sequence.output.empty()) throw UsageError("--output is needed: where the picture goes");
   if (arguments.frames_per_second) scene.video.frames_per_second = *arguments.frames_per_second;
   if (arguments.quality_crf) scene.video.quality_crf = *arguments.quality_crf;
   sequence.video = scene.video;

@@ -88,7 +88,7 @@ const Section& optics_section() {
       "How rays go on behind the water's surface.",
       {{"refraction",
         {a_name({"thickness", "image_space", "ray_traced"})},
-        "\"thickness\"",
+        "\"ray_traced\"",
         "One interface, the far side guessed; one interface, iteration in the picture of the scene; or rays through "
         "the water",
         [](const JsonValue& v, Draft& d) { picture(d).optics.refraction = refraction_method_of(v.text()); }},

@@ -157,7 +157,7 @@ TEST_F(SceneFileFields, EachChangeSomething) {
                            "\"camera\": {\"margin\": 0.1}",
                            "\"camera\": {\"orbit\": 3}",
                            "\"camera\": {\"path\": [{\"frame\": 0, \"eye\": [1, 2, 3], \"target\": [0, 0, 0]}]}",
-                           "\"optics\": {\"refraction\": \"ray_traced\"}",
+                           "\"optics\": {\"refraction\": \"image_space\"}",
                            "\"optics\": {\"bounces\": 3}",
                            "\"optics\": {\"iterations\": 3}",
                            "\"optics\": {\"threshold\": 3}",
