@@ -83,8 +83,8 @@ struct CausticsOptions {
   /// Light that has entered the water stays in it, as published. Else light that leaves drops, sheets and the sides of
   /// the water is followed through the air, where the surface can be marched.
   bool single_interface = false;
-  /// Texels along the longer side of the map that the triangles are drawn into; 0: two to a point of the screen, at
-  /// most 1024.
+  /// Texels along the longer side of the map that the triangles are drawn into; 0: five to four points of the screen,
+  /// 128 .. 1024.
   int map_size = 0;
   int most_lights = 4;      ///< sun and lamps that make caustics, the brightest first
 };

@@ -199,7 +199,7 @@ void add_map(LightCast& cast, const Image<Landing>& landings, const Overview& ov
   if (first) cast.smooth_px = smooth_px;
   const auto drawn = [&](const PolygonLists& lists) {
     Image<vec3> power(view.width, view.height);
-    draw_polygons(lists, power);
+    draw_light(lists, power);
     blur_finely(power, smooth_px);
     return power;
   };
@@ -225,7 +225,7 @@ LightCast cast_light(const Surface& surface, const LightSource& light, const Bou
   const float cos_i = std::max(glm::dot(to_light, up), 0.02f);
   const vec3 bent = formulas::refracted(-to_light, up, material.ior, formulas::fresnel(cos_i, material.ior).cos_t);
   const int points = std::max(cast.screen.width, cast.screen.height);
-  const int size = options.map_size > 0 ? options.map_size : std::clamp(2 * points, kLeastSize, kMapSize);
+  const int size = options.map_size > 0 ? options.map_size : std::clamp(5 * points / 4, kLeastSize, kMapSize);
   const bool ground_alone = scene.solid_bounds().empty();
   const int solids_size = ground_alone ? kGroundSize : std::clamp(points, 2 * kLeastSize, kSolidsSize);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace meniscus {
 namespace {
@@ -13,8 +14,10 @@ constexpr int kBandRows = 16;
 /// Polygons of a smaller area, texels^2, are drawn as lines: their covered areas would be noise of rounding.
 constexpr double kSliver = 1e-5;
 /// Texels along a side of what is drawn in floats; the doubled area from which on their rounding does no harm.
-constexpr int kSmall = 8;
+constexpr int kSmall = 20;
 constexpr float kSmallSliver = 1e-2f;
+/// Thin polygons shorter than this are a point.
+constexpr float kTiny = 0.3f;
 
 /// Adds to one row: coverage as differences along x, so that the prefix sum is the covered area of each texel.
 class Row {
@@ -97,6 +100,19 @@ double area_of(const Polygon& polygon) {
   return 0.5 * std::abs(doubled);
 }
 
+/// A square of one texel around a point.
+void add_square(vec2 point, vec3 flux, Image<vec3>& image, int top, int bottom) {
+  const vec2 corner = point - 0.5f, base = glm::floor(corner), part = corner - base;
+  for (int n = 0; n < 4; ++n) {
+    const float x = base.x + static_cast<float>(n & 1), y = base.y + static_cast<float>(n >> 1);
+    if (!(x >= 0 && x < static_cast<float>(image.width()) && y >= static_cast<float>(top) &&
+          y < static_cast<float>(bottom)))
+      continue;
+    image(static_cast<int>(x), static_cast<int>(y)) +=
+        flux * ((n & 1 ? part.x : 1.0f - part.x) * (n >> 1 ? part.y : 1.0f - part.y));
+  }
+}
+
 /// A polygon of no area: its flux along its longest side, in points between texel centres.
 void draw_line(const LightPolygon& polygon, Image<vec3>& image, int top, int bottom) {
   vec2 a = polygon.corner[0], b = a;
@@ -110,19 +126,8 @@ void draw_line(const LightPolygon& polygon, Image<vec3>& image, int top, int bot
       }
   const int points = std::min(1 << 14, 1 + static_cast<int>(2.0f * std::sqrt(longest)));
   const vec3 share = polygon.flux / static_cast<float>(points);
-  for (int k = 0; k < points; ++k) {
-    const vec2 p = a + (static_cast<float>(k) + 0.5f) / static_cast<float>(points) * (b - a);
-    // A square of one texel around the point.
-    const vec2 corner = p - 0.5f, base = glm::floor(corner), part = corner - base;
-    for (int n = 0; n < 4; ++n) {
-      const float x = base.x + static_cast<float>(n & 1), y = base.y + static_cast<float>(n >> 1);
-      if (!(x >= 0 && x < static_cast<float>(image.width()) && y >= static_cast<float>(top) &&
-            y < static_cast<float>(bottom)))
-        continue;
-      image(static_cast<int>(x), static_cast<int>(y)) +=
-          share * (n & 1 ? part.x : 1.0f - part.x) * (n >> 1 ? part.y : 1.0f - part.y);
-    }
-  }
+  for (int k = 0; k < points; ++k)
+    add_square(a + (static_cast<float>(k) + 0.5f) / static_cast<float>(points) * (b - a), share, image, top, bottom);
 }
 
 /// Polygons in a few texels, of which there are most: the same sums in floats beside their first texel.
@@ -148,11 +153,18 @@ bool draw_small(const LightPolygon& light, Image<vec3>& image, int top, int bott
     const vec2 u = corner[i] - corner[0], v = corner[i + 1] - corner[0];
     doubled += u.x * v.y - u.y * v.x;
   }
-  if (!(std::abs(doubled) > kSmallSliver)) return false;
+  if (!(std::abs(doubled) > kSmallSliver)) {
+    if (std::max(high.x - low.x, high.y - low.y) < kTiny)
+      add_square(0.5f * (low + high), light.flux, image, top, bottom);
+    else
+      draw_line(light, image, top, bottom);
+    return true;
+  }
   const vec3 per_area = light.flux * (2.0f / doubled);
 
   // Differences along x of the covered area, one row for each of the texels.
-  float difference[kSmall][kSmall + 1] = {};
+  float difference[kSmall][kSmall + 1];
+  for (int y = 0; y < rows; ++y) std::fill(difference[y], difference[y] + columns + 1, 0.0f);
   for (int i = 0; i < corners; ++i) {
     const vec2 a = corner[i], b = corner[i + 1 < corners ? i + 1 : 0];
     const float sign = a.y < b.y ? 1.0f : -1.0f;
@@ -255,9 +267,14 @@ float doubled_area(const LightPolygon& polygon) {
   return doubled;
 }
 
-void draw_polygons(const std::vector<std::vector<LightPolygon>>& lists, Image<vec3>& image) {
-  if (image.empty()) return;
+namespace {
+
+/// Draws polygons whose longer side along the axes is in [least, most), in texels of `scale` texels of theirs.
+/// @return  whether there are any
+bool draw_level(const std::vector<std::vector<LightPolygon>>& lists, Image<vec3>& image, float scale, float least,
+                float most) {
   const std::size_t bands = static_cast<std::size_t>((image.height() + kBandRows - 1) / kBandRows);
+  const float width = static_cast<float>(image.width()), height = static_cast<float>(image.height());
   // Which polygons touch which band, list by list and in their order.
   std::vector<std::vector<std::uint32_t>> touching(lists.size() * bands);
   parallel_for(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -269,26 +286,76 @@ void draw_polygons(const std::vector<std::vector<LightPolygon>>& lists, Image<ve
           low = glm::min(low, polygon.corner[i]);
           high = glm::max(high, polygon.corner[i]);
         }
+        const float side = std::max(high.x - low.x, high.y - low.y);
+        low /= scale;
+        high /= scale;
         // One texel more: lines are that wide. Corners that are not numbers fail all comparisons.
-        if (!(low.y - 1.0f < static_cast<float>(image.height()) && high.y + 1.0f > 0 && high.x + 1.0f > 0 &&
-              low.x - 1.0f < static_cast<float>(image.width()) && glm::dot(polygon.flux, vec3{1.0f}) > 0))
+        if (!(side >= least && side < most && low.y - 1.0f < height && high.y + 1.0f > 0 && high.x + 1.0f > 0 &&
+              low.x - 1.0f < width && glm::dot(polygon.flux, vec3{1.0f}) > 0))
           continue;
-        const int first = std::max(0, static_cast<int>(std::max(low.y - 1.0f, 0.0f))) / kBandRows;
-        const int last = std::min(image.height() - 1,
-                                  static_cast<int>(std::min(high.y + 1.0f, static_cast<float>(image.height())))) /
-                         kBandRows;
+        const int first = static_cast<int>(std::max(low.y - 1.0f, 0.0f)) / kBandRows;
+        const int last = std::min(image.height() - 1, static_cast<int>(std::min(high.y + 1.0f, height))) / kBandRows;
         for (int band = first; band <= last; ++band)
           touching[l * bands + static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(p));
       }
   });
+  if (std::all_of(touching.begin(), touching.end(), [](const auto& list) { return list.empty(); })) return false;
   parallel_for(bands, 1, [&](std::size_t begin, std::size_t end) {
     Row row(image.width());
     for (std::size_t band = begin; band < end; ++band) {
       const int top = static_cast<int>(band) * kBandRows, bottom = std::min(top + kBandRows, image.height());
       for (std::size_t l = 0; l < lists.size(); ++l)
-        for (const std::uint32_t p : touching[l * bands + band]) draw(lists[l][p], image, top, bottom, row);
+        for (const std::uint32_t p : touching[l * bands + band]) {
+          LightPolygon polygon = lists[l][p];
+          if (scale != 1.0f)
+            for (vec2& corner : polygon.corner) corner /= scale;
+          draw(polygon, image, top, bottom, row);
+        }
     }
   });
+  return true;
+}
+
+/// Adds a picture of texels `factor` times as large, linear between their centres.
+void add_coarse(const Image<vec3>& coarse, int factor, Image<vec3>& image) {
+  const float scale = 1.0f / static_cast<float>(factor), share = scale * scale;
+  const auto place = [&](int x, int count, int& first, int& next) {
+    const float at = (static_cast<float>(x) + 0.5f) * scale - 0.5f;
+    const int i = static_cast<int>(std::floor(at));
+    first = std::clamp(i, 0, count - 1);
+    next = std::clamp(i + 1, 0, count - 1);
+    return at - static_cast<float>(i);
+  };
+  parallel_for(static_cast<std::size_t>(image.height()), 16, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      int j = 0, j1 = 0;
+      const float t = place(y, coarse.height(), j, j1);
+      for (int x = 0; x < image.width(); ++x) {
+        int i = 0, i1 = 0;
+        const float s = place(x, coarse.width(), i, i1);
+        image(x, y) += share * ((1.0f - t) * ((1.0f - s) * coarse(i, j) + s * coarse(i1, j)) +
+                                t * ((1.0f - s) * coarse(i, j1) + s * coarse(i1, j1)));
+      }
+    }
+  });
+}
+
+}  // namespace
+
+void draw_polygons(const std::vector<std::vector<LightPolygon>>& lists, Image<vec3>& image) {
+  if (!image.empty()) draw_level(lists, image, 1.0f, 0.0f, std::numeric_limits<float>::infinity());
+}
+
+void draw_light(const std::vector<std::vector<LightPolygon>>& lists, Image<vec3>& image) {
+  if (image.empty()) return;
+  constexpr float kFew = 18.0f;
+  draw_level(lists, image, 1.0f, 0.0f, kFew);
+  for (int factor = 4; factor <= 64; factor *= 4) {
+    Image<vec3> coarse((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor);
+    const float scale = static_cast<float>(factor), least = 0.25f * scale * kFew;
+    const float most = factor == 64 ? std::numeric_limits<float>::infinity() : scale * kFew;
+    if (draw_level(lists, coarse, scale, least, most)) add_coarse(coarse, factor, image);
+  }
 }
 
 }  // namespace meniscus

@@ -22,4 +22,8 @@ float doubled_area(const LightPolygon& polygon);
 /// result is the same for any number of threads.
 void draw_polygons(const std::vector<std::vector<LightPolygon>>& lists, Image<vec3>& image);
 
+/// The same with polygons of many texels drawn in texels 4, 16 or 64 times as large: their light is thin, and their
+/// edges may be soft.
+void draw_light(const std::vector<std::vector<LightPolygon>>& lists, Image<vec3>& image);
+
 }  // namespace meniscus
