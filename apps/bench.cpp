@@ -9,6 +9,7 @@ void add_bench(CLI::App& program) {
   add_bench_caustics(*bench);
   add_bench_density(*bench);
   add_bench_refraction(*bench);
+  add_bench_point_sampled(*bench);
 }
 
 }  // namespace meniscus::apps

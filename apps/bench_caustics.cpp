@@ -18,6 +18,7 @@ struct CausticsArguments {
   int repeat = 5;
   int threads = 0;
   bool exact_hits = false;
+  bool single_interface = false;
   bool reference = false;
   bool json = false;
 };
@@ -36,6 +37,7 @@ Json measure(const CausticsArguments& arguments) {
   options.screen_width = arguments.screen.width;
   options.screen_height = arguments.screen.height;
   options.exact_hits = arguments.exact_hits;
+  options.single_interface = arguments.single_interface;
 
   // The run whose total is the median, after one that warms up.
   std::vector<StageTimes> runs;
@@ -64,6 +66,7 @@ Json measure(const CausticsArguments& arguments) {
   json["triangles"] = report.triangles;
   json["entered_w"] = report.entered;
   json["absorbed_w"] = report.absorbed;
+  json["mirrored_w"] = report.mirrored;
   json["landed_w"] = report.landed;
   if (arguments.reference) {
     const CausticsReport compared = measure_caustics(*surface, scene, material, options, nullptr, 8);
@@ -93,6 +96,7 @@ void add_bench_caustics(CLI::App& bench) {
       ->type_name("N")
       ->check(CLI::Range(0, 1024).description(""));
   command->add_flag("--exact-hits", arguments->exact_hits, "Meet the floor by rays instead of the geometry map");
+  command->add_flag("--single-interface", arguments->single_interface, "Light that has entered the water stays in it");
   command->add_flag("--reference", arguments->reference, "Compare the map with photons");
   command->add_flag("--json", arguments->json, "Print one JSON object");
   command->callback([arguments] {
