@@ -45,23 +45,28 @@ void MarchCells::mark_reached(const RaycastField& field) {
   const auto cell = [&](float value, int axis) {
     return std::clamp(static_cast<int>((value - low_[axis]) * per_size_), 0, n_[axis] - 1);
   };
+  const auto mark = [&](std::size_t begin, std::size_t end, int first, int last) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const vec3 p = grid.position(i);
+      const float r = field.entry_radius[i];
+      const int z0 = std::max(cell(p.z - r, 2), first), z1 = std::min(cell(p.z + r, 2), last);
+      const int y0 = cell(p.y - r, 1), y1 = cell(p.y + r, 1), x0 = cell(p.x - r, 0), x1 = cell(p.x + r, 0);
+      for (int z = z0; z <= z1; ++z)
+        for (int y = y0; y <= y1; ++y)
+          std::fill_n(kind_.begin() + static_cast<std::ptrdiff_t>(index(x0, y, z)), x1 - x0 + 1,
+                      static_cast<std::uint8_t>(unknown));
+    }
+  };
+  if (!grid.dense()) {  // the grid has more rows than can be looked through
+    mark(0, grid.size(), 0, n_[2] - 1);
+    return;
+  }
   parallel_for(static_cast<std::size_t>((n_[2] + kLayers - 1) / kLayers), 1, [&](std::size_t piece, std::size_t) {
     const int first = static_cast<int>(piece) * kLayers, last = std::min(first + kLayers, n_[2]) - 1;
     const Bounds all = grid.bounds();
     const vec3 from{all.low.x, all.low.y, low_.z + static_cast<float>(first) * size_ - reach};
     const vec3 to{all.high.x, all.high.y, low_.z + static_cast<float>(last + 1) * size_ + reach};
-    grid.for_each_run(from, to, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const vec3 p = grid.position(i);
-        const float r = field.entry_radius[i];
-        const int z0 = std::max(cell(p.z - r, 2), first), z1 = std::min(cell(p.z + r, 2), last);
-        const int y0 = cell(p.y - r, 1), y1 = cell(p.y + r, 1), x0 = cell(p.x - r, 0), x1 = cell(p.x + r, 0);
-        for (int z = z0; z <= z1; ++z)
-          for (int y = y0; y <= y1; ++y)
-            std::fill_n(kind_.begin() + static_cast<std::ptrdiff_t>(index(x0, y, z)), x1 - x0 + 1,
-                        static_cast<std::uint8_t>(unknown));
-      }
-    });
+    grid.for_each_run(from, to, [&](std::size_t begin, std::size_t end) { mark(begin, end, first, last); });
   });
 }
 

@@ -1,10 +1,14 @@
 // Particles as balls: what they are before a surface is made of them, to compare with.
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <mutex>
+#include <optional>
 
 #include "meniscus/surface.h"
 #include "particles/grid.h"
+#include "surface/spheres_crossings.h"
 #include "surface/splat.h"
 
 namespace meniscus {
@@ -61,6 +65,16 @@ class SphereSurface final : public Surface {
       values[i] = whole(std::clamp(static_cast<int>(points[i].x), 0, view.width - 1),
                         std::clamp(static_cast<int>(points[i].y), 0, view.height - 1));
     return values;
+  }
+
+  bool can_march() const override { return true; }
+
+  void crossings(std::span<const Ray> rays, std::span<const float> from, std::span<const float> limit,
+                 std::span<const std::uint8_t> inside, std::span<Crossing> found) const override {
+    // Isolated, so that the thread that makes the cells does not begin other work that waits for them.
+    std::call_once(cells_made_,
+                   [&] { tbb::this_task_arena::isolate([&] { cells_.emplace(ball_cells(grid_, radius_)); }); });
+    ball_crossings(grid_, radius_, *cells_, rays, from, limit, inside, found);
   }
 
   Bounds bounds() const override { return grid_.bounds().grown(radius_); }
@@ -131,6 +145,8 @@ class SphereSurface final : public Surface {
   ParticleGrid grid_;
   float radius_;
   std::vector<vec3> colours_;
+  mutable std::once_flag cells_made_;
+  mutable std::optional<MarchCells> cells_;  ///< made when rays are followed for the first time
 };
 
 }  // namespace
