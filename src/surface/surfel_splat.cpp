@@ -142,20 +142,22 @@ struct TileSamples {
   /// The arrays that the passes work on.
   SurfelSamples arrays(bool perspective) {
     const std::size_t count = place.size(), pitch = (count + 2 * kSampleRoom) / kSampleRoom * kSampleRoom;
-    values.reserve(10 * pitch, 0);
+    values.reserve(11 * pitch, 0);
     float* const v = values.data();
-    std::fill_n(v, 10 * pitch, 0.0f);
-    std::fill_n(v + 2 * pitch, pitch, 1.0f);
-    std::fill_n(v + 3 * pitch, pitch, std::numeric_limits<float>::infinity());
+    std::fill_n(v, 11 * pitch, 0.0f);
+    std::fill_n(v + 2 * pitch, 2 * pitch, 1.0f);
+    std::fill_n(v + 4 * pitch, pitch, std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < count; ++i) {
       v[i] = place[i].x;
       v[pitch + i] = place[i].y;
-      if (perspective) v[2 * pitch + i] = std::sqrt(1.0f + glm::dot(place[i], place[i]));
+      if (!perspective) continue;
+      const float length2 = 1.0f + glm::dot(place[i], place[i]);
+      v[2 * pitch + i] = std::sqrt(length2);
+      v[3 * pitch + i] = 1.0f / length2;
     }
-    return {count,         start.data(),  v,
-            v + pitch,     v + 2 * pitch, v + 3 * pitch,
-            v + 4 * pitch, v + 5 * pitch, v + 6 * pitch,
-            v + 7 * pitch, v + 8 * pitch, v + 9 * pitch};
+    const auto array = [&](std::size_t i) { return v + i * pitch; };
+    return {count,    start.data(), array(0), array(1), array(2), array(3), array(4),
+            array(5), array(6),     array(7), array(8), array(9), array(10)};
   }
 };
 

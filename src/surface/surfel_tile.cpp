@@ -39,14 +39,15 @@ struct Disc {
         normal(all(disc.normal)),
         straight(all(disc.straight)),
         skew(all(disc.skew)),
-        radius2(hn::Set(Tag(), disc.radius2)) {}
+        radius2(hn::Set(Tag(), disc.radius2)),
+        falloff(hn::Set(Tag(), -2.0f / disc.radius2)) {}
   HWY_INLINE Vec3 bent(const Vec3& v) const {
     return {hn::MulAdd(straight.x, v.x, hn::MulAdd(skew.z, v.y, hn::Mul(skew.y, v.z))),
             hn::MulAdd(straight.y, v.y, hn::MulAdd(skew.z, v.x, hn::Mul(skew.x, v.z))),
             hn::MulAdd(straight.z, v.z, hn::MulAdd(skew.y, v.x, hn::Mul(skew.x, v.y)))};
   }
   Vec3 centre, normal, straight, skew;
-  Vec radius2;
+  Vec radius2, falloff;
 };
 
 struct Meeting {
@@ -59,7 +60,7 @@ struct Meeting {
 /// From the place w of the ray that is nearest to the centre, q = w + t d with a t^2 + b t + c = 0; the root in the
 /// form that holds for a flat disc, too, on the side that faces the eye.
 template <bool kPerspective>
-HWY_INLINE Meeting meet(const Disc& disc, Vec x, Vec y, Vec length) {
+HWY_INLINE Meeting meet(const Disc& disc, Vec x, Vec y, Vec length, Vec per_length2) {
   const Tag d;
   const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const Vec length2 = hn::Mul(length, length);
@@ -67,7 +68,7 @@ HWY_INLINE Meeting meet(const Disc& disc, Vec x, Vec y, Vec length) {
   Vec3 w, bent_direction, direction;
   if (kPerspective) {
     direction = {x, y, one};
-    nearest = hn::Div(dot(disc.centre, direction), length2);
+    nearest = hn::Mul(dot(disc.centre, direction), per_length2);
     w = {hn::MulSub(nearest, x, disc.centre.x), hn::MulSub(nearest, y, disc.centre.y), hn::Sub(nearest, disc.centre.z)};
     bent_direction = disc.bent(direction);
   } else {
@@ -114,8 +115,9 @@ HWY_INLINE void find_nearest(const SurfelTile& tile, const SurfelSamples& sample
   const std::size_t lanes = hn::Lanes(d);
   for_each_run(tile, samples, [&](const SurfelDisc&, const Disc& disc, std::size_t i, std::size_t end) HWY_ATTR {
     for (; i < end; i += lanes) {
-      const Meeting meeting = meet<kPerspective>(disc, hn::LoadU(d, samples.x + i), hn::LoadU(d, samples.y + i),
-                                                 hn::LoadU(d, samples.length + i));
+      const Meeting meeting =
+          meet<kPerspective>(disc, hn::LoadU(d, samples.x + i), hn::LoadU(d, samples.y + i),
+                             hn::LoadU(d, samples.length + i), hn::LoadU(d, samples.per_length2 + i));
       const Mask met = hn::And(meeting.met, hn::FirstN(d, end - i));
       const Vec nearest = hn::LoadU(d, samples.nearest + i), last = hn::LoadU(d, samples.last + i);
       hn::StoreU(hn::IfThenElse(met, hn::Min(nearest, meeting.depth), nearest), d, samples.nearest + i);
@@ -133,12 +135,12 @@ HWY_INLINE void sum_near(const SurfelTile& tile, const SurfelSamples& samples) {
   for_each_run(tile, samples, [&](const SurfelDisc& given, const Disc& disc, std::size_t i, std::size_t end) HWY_ATTR {
     for (; i < end; i += lanes) {
       const Vec length = hn::LoadU(d, samples.length + i);
-      const Meeting meeting =
-          meet<kPerspective>(disc, hn::LoadU(d, samples.x + i), hn::LoadU(d, samples.y + i), length);
+      const Meeting meeting = meet<kPerspective>(disc, hn::LoadU(d, samples.x + i), hn::LoadU(d, samples.y + i), length,
+                                                 hn::LoadU(d, samples.per_length2 + i));
       const Vec behind = hn::Mul(hn::Sub(meeting.depth, hn::LoadU(d, samples.nearest + i)), length);
       const Mask counts = hn::And(hn::And(meeting.met, hn::Le(behind, epsilon)), hn::FirstN(d, end - i));
       if (hn::AllFalse(d, counts)) continue;
-      const Vec exponent = hn::Div(hn::Mul(hn::Set(d, -2.0f), meeting.r2), disc.radius2);
+      const Vec exponent = hn::Mul(disc.falloff, meeting.r2);
       const Vec weight = hn::IfThenElseZero(counts, hn::Exp(d, hn::Max(exponent, hn::Set(d, -2.0f))));
       Vec3 normal;
       if (kOwnNormals) {

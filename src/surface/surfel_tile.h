@@ -29,6 +29,7 @@ struct SurfelSamples {
   const std::uint32_t* start = nullptr;       ///< by pixel of the tile, and one more
   const float *x = nullptr, *y = nullptr;     ///< on the plane at distance 1, or in metres in an orthographic view
   const float* length = nullptr;              ///< of the ray's direction (x, y, 1), or 1
+  const float* per_length2 = nullptr;         ///< 1 / length^2
   float *nearest = nullptr, *last = nullptr;  ///< in lengths of the direction; set to +infinity and 0
   float *nx = nullptr, *ny = nullptr, *nz = nullptr, *depth = nullptr, *weight = nullptr;  ///< sums; set to 0
 };
