@@ -87,11 +87,11 @@ void print(const Guess& guess) {
                            guess.reasoning, "", guess.option);
 }
 
-FrameInfo read(const std::string& path, const SurveyOptions& options) {
+FrameInfo read(const FrameSequence& sequence, const FramePath& path, const SurveyOptions& options) {
   FrameInfo frame;
-  frame.path = path;
+  frame.path = path.path;
   try {
-    frame.particles = read_particles(path);
+    frame.particles = read_frame(sequence, path);
     frame.survey = survey_particles(frame.particles, options);
   } catch (const Error& error) {
     if (options.strict) throw;
@@ -101,17 +101,22 @@ FrameInfo read(const std::string& path, const SurveyOptions& options) {
   return frame;
 }
 
-void info(const InfoArguments& arguments) {
-  const FrameSequence sequence = arguments.input.find(arguments.json);
+void info(InfoArguments& arguments) {
+  SceneFile scene;
+  if (const std::optional<std::string> path = arguments.input.scene_file()) {
+    scene = read_scene_file(*path);
+    arguments.input.take(scene);
+  }
+  const FrameSequence sequence = arguments.input.find_in(scene, arguments.json);
   const SurveyOptions survey_options = arguments.input.survey_options();
-  PictureOptions options;
-  options.surface.spacing = arguments.input.spacing.value_or(0.0f);
-  options.surface.smoothing_length = arguments.input.smoothing_length.value_or(0.0f);
+  PictureOptions options = scene.picture;
+  if (arguments.input.spacing) options.surface.spacing = *arguments.input.spacing;
+  if (arguments.input.smoothing_length) options.surface.smoothing_length = *arguments.input.smoothing_length;
 
   Json frames = Json::array();
   std::size_t failed = 0;
   for (const FramePath& path : sequence.frames) {
-    const FrameInfo frame = read(path.path, survey_options);
+    const FrameInfo frame = read(sequence, path, survey_options);
     failed += frame.problem.empty() ? 0 : 1;
     if (arguments.json)
       frames.push_back(frame_json(frame, options));

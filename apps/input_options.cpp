@@ -27,7 +27,10 @@ bool is_scene_file(const std::string& path) { return path.size() > 5 && path.sub
 
 void InputOptions::add_to(CLI::App& command) {
   const char* group = "Input";
-  command.add_option("WHAT", what, "Frames: files, a directory, a glob, or a pattern with {} for the frame number")
+  command
+      .add_option(
+          "WHAT", what,
+          "Frames: files, a directory, a glob, or a pattern with {} for the frame number; or one scene file (.json)")
       ->required()
       ->type_name("");
   command
@@ -64,6 +67,11 @@ FrameSequence InputOptions::find(bool quiet) const {
   if (!quiet)
     for (const std::string& note : found.notes) std::cerr << "meniscus: " << note << '\n';
   return select(std::move(found));
+}
+
+FrameSequence InputOptions::find_in(const SceneFile& scene, bool quiet) const {
+  if (scene.waves) return select(waves_sequence(*scene.waves));
+  return find(quiet);
 }
 
 FrameSequence InputOptions::select(FrameSequence found) const {

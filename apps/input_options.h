@@ -29,6 +29,8 @@ struct InputOptions {
   /// The scene file, where the only argument is one.
   /// @throws UsageError  a scene file among other arguments
   std::optional<std::string> scene_file() const;
+  /// The frames of a scene file after take(), files or made up.
+  FrameSequence find_in(const SceneFile& scene, bool quiet) const;
   /// Takes from a scene file what the arguments do not say.
   void take(const SceneFile& scene);
   SurveyOptions survey_options() const;

@@ -58,6 +58,19 @@ ToneCurve tone_curve_of(const std::string& name) {
   throw UsageError("--tone: filmic or linear was expected, not '" + name + "'");
 }
 
+/// A camera that is set by hand goes before a scene file's path.
+CameraOptions& set_camera(PictureOptions& options) {
+  options.path.reset();
+  return options.camera;
+}
+
+template <class Number>
+Number in_range(const char* option, Number value, Number low, Number high) {
+  if (!(value >= low && value <= high))
+    throw UsageError(fmt::format("{}: {} to {} was expected, not {}", option, low, high, value));
+  return value;
+}
+
 }  // namespace
 
 void PictureArguments::add_surface(CLI::App& command) {
@@ -173,27 +186,28 @@ void PictureArguments::add_picture(CLI::App& command) {
 void PictureArguments::add_camera(CLI::App& command) {
   Group group(command, "Camera", setters_);
   group.text(
-      "--eye", "X,Y,Z", [](PictureOptions& p, const std::string& text) { p.camera.eye = parse_vec3("--eye", text); },
+      "--eye", "X,Y,Z",
+      [](PictureOptions& p, const std::string& text) { set_camera(p).eye = parse_vec3("--eye", text); },
       "Where the camera stands, m (default: so that all water of the sequence is seen)");
   group.text(
       "--target", "X,Y,Z",
-      [](PictureOptions& p, const std::string& text) { p.camera.target = parse_vec3("--target", text); },
+      [](PictureOptions& p, const std::string& text) { set_camera(p).target = parse_vec3("--target", text); },
       "Where it looks, m (default: the middle of the water)");
   group.number<float>(
-      "--azimuth", "DEGREES", [](PictureOptions& p, float v) { p.camera.azimuth_deg = v; },
+      "--azimuth", "DEGREES", [](PictureOptions& p, float v) { set_camera(p).azimuth_deg = v; },
       "Direction that it looks from, about the up axis; at 90 from +x where y or z is up (default: 30 off the longer "
       "side)");
   group.number<float>(
-      "--elevation", "DEGREES", [](PictureOptions& p, float v) { p.camera.elevation_deg = v; },
+      "--elevation", "DEGREES", [](PictureOptions& p, float v) { set_camera(p).elevation_deg = v; },
       "Above the horizon, -90 to 90 degrees (default: 16)");
   group.number<float>(
-      "--distance", "METRES", [](PictureOptions& p, float v) { p.camera.distance = v; },
+      "--distance", "METRES", [](PictureOptions& p, float v) { set_camera(p).distance = v; },
       "From the target, m (default: fitted)");
   group.number<float>(
       "--fov", "DEGREES", [](PictureOptions& p, float v) { p.camera.fov_deg = v; },
       "Full vertical field of view (default: 35)");
   group.number<float>(
-      "--orthographic", "METRES", [](PictureOptions& p, float v) { p.camera.orthographic_height = v; },
+      "--orthographic", "METRES", [](PictureOptions& p, float v) { set_camera(p).orthographic_height = v; },
       "Parallel rays; the picture is this high, m");
   group.number<float>(
       "--orbit", "DEGREES", [](PictureOptions& p, float v) { p.camera.orbit_deg = v; },
@@ -210,7 +224,10 @@ void PictureArguments::add_light(CLI::App& command) {
       "Environment map, equirectangular Radiance .hdr (default: an analytic sky)");
   group.text(
       "--sun", "AZIMUTH,ELEVATION",
-      [](PictureOptions& p, const std::string& text) { p.sun_deg = parse_vec2("--sun", text); },
+      [](PictureOptions& p, const std::string& text) {
+        p.sun_deg = parse_vec2("--sun", text);
+        static_cast<void>(in_range("--sun: elevation", p.sun_deg->y, -90.0f, 90.0f));
+      },
       "Where the sun stands, degrees; azimuth as for the camera (default: behind the water to the right)");
   group.number<float>(
       "--sun-scale", "FACTOR",
@@ -275,15 +292,20 @@ void PictureArguments::add_optics(CLI::App& command) {
       "How rays go on behind the surface: thickness (one interface, the far side guessed), image_space (one interface, "
       "iteration in the picture of the scene), ray_traced (through the water, best) (default: ray_traced)");
   group.number<int>(
-      "--bounces", "N", [](PictureOptions& p, int v) { p.optics.bounces = v; },
+      "--bounces", "N", [](PictureOptions& p, int v) { p.optics.bounces = in_range("--bounces", v, 1, 64); },
       "Interfaces in a ray-traced path at most, 1 to 64 (default: 8)");
   group.number<int>(
-      "--iterations", "N", [](PictureOptions& p, int v) { p.optics.iterations = p.caustics_options.iterations = v; },
-      "Image-space: projections onto the ray at most, 1 to 256 (default: 8)");
+      "--iterations", "N",
+      [](PictureOptions& p, int v) {
+        p.optics.iterations = p.caustics_options.iterations = in_range("--iterations", v, 1, 256);
+      },
+      "Image-space refraction and caustics: projections onto the ray at most, 1 to 256 (default: 8)");
   group.number<float>(
       "--threshold", "METRES",
-      [](PictureOptions& p, float v) { p.optics.threshold = p.caustics_options.threshold = v; },
-      "Image-space: distance from the scene that counts as met, m (default: from the pixels)");
+      [](PictureOptions& p, float v) {
+        p.optics.threshold = p.caustics_options.threshold = in_range("--threshold", v, 0.0f, 1e30f);
+      },
+      "Image-space refraction and caustics: distance from the scene that counts as met, m (default: from the pixels)");
   group.number<float>(
       "--ior", "N", [](PictureOptions& p, float v) { p.ior = v; },
       "Index of refraction, above 1 (default: the material's; water 1.333)");

@@ -52,13 +52,9 @@ SceneFile scene_of(RenderArguments& arguments) {
   const std::optional<std::string> path = arguments.input.scene_file();
   if (path) scene = read_scene_file(*path);
   if (path && scene.frames.empty() && !scene.waves)
-    throw Error(ErrorCode::not_found, {"the scene file names no water",
-                                       "\"water\": {\"frames\": ...} or {\"waves\": {...}}",
-                                       {},
-                                       *path,
-                                       {},
-                                       {},
-                                       {}});
+    throw Error(
+        ErrorCode::not_found,
+        {"the scene file names no water", "\"water\": {\"frames\": ...} or {\"waves\": {...}}", {}, *path, {}, {}, {}});
   SequenceOptions& sequence = arguments.sequence;
   sequence.output = arguments.output.empty() ? scene.output : arguments.output;
   if (sequence.output.empty()) throw UsageError("--output is needed: where the picture goes");
@@ -83,8 +79,7 @@ void render(RenderArguments& arguments) {
   if (OutputTarget(arguments.sequence.output).format() == PictureFormat::ply &&
       picture.method != SurfaceMethod::surfels)
     throw UsageError("a .ply file holds surfels: add --surface surfels, or write a .png, .exr or .mp4");
-  const FrameSequence sequence =
-      scene.waves ? arguments.input.select(waves_sequence(*scene.waves)) : arguments.input.find(arguments.quiet);
+  const FrameSequence sequence = arguments.input.find_in(scene, arguments.quiet);
   arguments.sequence.strict = arguments.input.strict;
   arguments.sequence.turntable = turntable_of(arguments, picture);
   check_output(sequence, arguments.sequence);

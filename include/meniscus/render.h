@@ -254,6 +254,7 @@ struct PictureOptions {
   float sun_scale = 1;                ///< factor of the sun's light, >= 0
   std::vector<BodyOptions> bodies;
   TankStyle tank = TankStyle::none;
+  Bounds bodies_bounds;               ///< m; of the bodies in the first frame, which the fitted camera shows too
   std::optional<Bounds> tank_inside;  ///< m; default around the particles of all frames
   std::optional<vec3> tank_albedo;    ///< of the tiles
   std::vector<PointLight> lamps;

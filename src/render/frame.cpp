@@ -82,7 +82,15 @@ std::vector<Surfel> surfels_of(const Particles& particles, const FrameSettings& 
   return extract_surfels(particles, surfel_options(settings, settings.surface), times);
 }
 
-FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
+FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
+  // A look at the buffers needs no light.
+  std::optional<FrameSettings> plain;
+  if (asked.show != Show::water) {
+    plain = asked;
+    plain->shadow = plain->caustics = false;
+    plain->optics.refraction = RefractionMethod::thickness;
+  }
+  const FrameSettings& settings = plain ? *plain : asked;
   FramePicture frame;
   StageTimes* times = &frame.times;
   const bool full = settings.antialias == Antialias::full;
@@ -119,6 +127,8 @@ FramePicture render_frame(const Particles& all, const FrameSettings& settings) {
   // Light.
   const Scene scene = lit_scene(*surface, settings, times);
   OpticsInputs optics{settings.optics, nullptr, surface.get()};
+  if (!surface->can_march() && optics.options.refraction == RefractionMethod::ray_traced)
+    optics.options.refraction = RefractionMethod::thickness;
   std::optional<SceneBuffers> behind;
   const bool edges_of_solids = settings.antialias == Antialias::edges && !scene.solid_bounds().empty();
   if (settings.optics.refraction == RefractionMethod::image_space || edges_of_solids) {

@@ -33,6 +33,18 @@ std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable)
   return shots;
 }
 
+/// Box around a placed body.
+Bounds bounds_of(const PlacedSolid& body) {
+  const Bounds box = body.solid->bounds();
+  Bounds placed;
+  for (int corner = 0; corner < 8; ++corner) {
+    const vec3 point{corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                     corner & 4 ? box.high.z : box.low.z};
+    placed.add(vec3(body.world_from_solid * glm::vec4(point, 1.0f)));
+  }
+  return placed;
+}
+
 void check(const OutputTarget& target, std::size_t pictures) {
   if (pictures > 1 && !target.is_pattern() && !target.is_film())
     throw Error(ErrorCode::invalid_argument, {fmt::format("{} pictures do not fit into one file", pictures),
@@ -56,8 +68,9 @@ class SequenceRun {
                      FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame) {
     check(target_, shots.size());
     if (target_.is_film() && finished(target_.path())) return all_skipped(shots, on_frame);
-    settings_ = settings_of(survey_, picture_);
     bodies_.emplace(picture_.bodies);
+    check_bodies(shots);
+    settings_ = settings_of(survey_, picture_);
     SequenceReport report;
     for (std::size_t i = 0; i < shots.size(); ++i) {
       report.frames.push_back(one(shots[i], i, shots.size()));
@@ -72,6 +85,30 @@ class SequenceRun {
   }
 
  private:
+  /// Where the bodies of the first frame are, and that there are any at all.
+  void check_bodies(const std::vector<Shot>& shots) {
+    std::size_t most = 0;
+    std::vector<std::string> missing;
+    for (std::size_t i = 0; i < shots.size() && most < picture_.bodies.size(); ++i) {
+      std::vector<std::string> notes;
+      const std::vector<PlacedSolid> placed = bodies_->at(i, shots[i].number, notes);
+      if (i == 0) {
+        for (const PlacedSolid& body : placed) picture_.bodies_bounds.add(bounds_of(body));
+        missing = notes;
+      }
+      most = std::max(most, placed.size());
+      if (bodies_->still()) break;
+    }
+    if (most < picture_.bodies.size())
+      throw Error(ErrorCode::not_found, {"a body has no file in any frame",
+                                         {},
+                                         missing.empty() ? std::string{} : missing.front(),
+                                         {},
+                                         {},
+                                         {},
+                                         "check the pattern: {} stands for the number in the frame's name"});
+  }
+
   bool finished(const std::string& path) const { return options_.resume && std::filesystem::exists(path); }
 
   SequenceReport all_skipped(const std::vector<Shot>& shots,
@@ -127,6 +164,8 @@ class SequenceRun {
       return;
     }
     settings_->solids = bodies_->at(index, shot.number, report.notes);
+    if (options_.strict && settings_->solids.size() < picture_.bodies.size())
+      throw Error(ErrorCode::not_found, report.notes.back());
     FramePicture frame = render_frame(*particles, *settings_);
     report.particles = frame.particles;
     if (frame.far_away > 0)
@@ -177,7 +216,7 @@ class SequenceRun {
 
   const FrameSequence& sequence_;
   const Survey& survey_;
-  const PictureOptions& picture_;
+  PictureOptions picture_;
   const SequenceOptions& options_;
   OutputTarget target_;
   std::optional<FrameSettings> settings_;

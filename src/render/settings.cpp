@@ -38,27 +38,6 @@ Material material_of(const Survey& survey, const PictureOptions& options) {
   return material;
 }
 
-Ground ground_of(const Survey& survey, const PictureOptions& options) {
-  Ground ground;
-  const vec3 up = direction_of(survey.up.axis);
-  const vec3 centre = survey.bounds.centre();
-  const vec3 extent = survey.bounds.extent();
-  const float across = longest_of(extent - up * glm::dot(extent, up));
-  const float size = std::max({across, longest_of(extent) * 0.25f, 4 * spacing_of(survey, options)});
-  ground.visible = options.ground != GroundStyle::none;
-  ground.up = up;
-  ground.height = ground_height(survey, options);
-  if (options.tank == TankStyle::tiled) ground.height -= 0.02f * size;  // the tank has a floor of its own
-  if (options.ground_albedo) {
-    ground.albedo = *options.ground_albedo;
-    ground.second_albedo = 0.7f * ground.albedo;
-  }
-  ground.square = options.ground == GroundStyle::chequer ? round_length(size / 8) : 0.0f;
-  ground.centre = centre + up * (ground.height - glm::dot(centre, up));
-  ground.fade_radius = 12 * size;
-  return ground;
-}
-
 /// Fitted around the water of all frames, open above it.
 Tank tank_of(const Survey& survey, const PictureOptions& options) {
   Tank tank;
@@ -74,6 +53,35 @@ Tank tank_of(const Survey& survey, const PictureOptions& options) {
     tank.inside.high += tank.up * (0.05f * longest_of(tank.inside.extent()));
   }
   return tank;
+}
+
+/// Tank and bodies.
+Bounds solids_bounds(const Survey& survey, const PictureOptions& options) {
+  Bounds solids = options.bodies_bounds;
+  const Tank tank = tank_of(survey, options);
+  if (tank.style != TankStyle::none) solids.add(tank.inside);
+  return solids;
+}
+
+Ground ground_of(const Survey& survey, const PictureOptions& options) {
+  Ground ground;
+  const vec3 up = direction_of(survey.up.axis);
+  const vec3 centre = survey.bounds.centre();
+  const vec3 extent = survey.bounds.extent();
+  const float across = longest_of(extent - up * glm::dot(extent, up));
+  const float solids = longest_of(solids_bounds(survey, options).extent());
+  const float size = std::max({across, longest_of(extent) * 0.25f, 4 * spacing_of(survey, options)});
+  ground.visible = options.ground != GroundStyle::none;
+  ground.up = up;
+  ground.height = ground_height(survey, options);
+  if (options.ground_albedo) {
+    ground.albedo = *options.ground_albedo;
+    ground.second_albedo = 0.7f * ground.albedo;
+  }
+  ground.square = options.ground == GroundStyle::chequer ? round_length(size / 8) : 0.0f;
+  ground.centre = centre + up * (ground.height - glm::dot(centre, up));
+  ground.fade_radius = 12 * std::max(size, solids);
+  return ground;
 }
 
 }  // namespace
@@ -95,6 +103,8 @@ float depth_scale(const Survey& survey, const PictureOptions& options) {
 
 float ground_height(const Survey& survey, const PictureOptions& options) {
   if (options.ground_height) return *options.ground_height;
+  if (options.tank != TankStyle::none && options.tank_inside)  // it stands on the ground
+    return glm::dot(options.tank_inside->low, direction_of(survey.up.axis));
   if (survey.bounds.empty()) return 0;
   const float lowest = glm::dot(survey.bounds.low, direction_of(survey.up.axis));
   // A few drops stand on no floor: the ground touches them from below.
@@ -167,7 +177,11 @@ View view_of(const Survey& survey, const PictureOptions& options, std::size_t in
                             options.width, options.height);
   }
   // A particle reaches about its spacing beyond its centre.
-  const Bounds seen = survey.bounds.grown(spacing_of(survey, options));
+  Bounds seen = survey.bounds.grown(spacing_of(survey, options));
+  // Tank and bodies, unless they are a landscape that the water is only a part of.
+  const Bounds solids = solids_bounds(survey, options);
+  if (!solids.empty() && (seen.empty() || longest_of(solids.extent()) < 4 * longest_of(seen.extent())))
+    seen.add(solids);
   const float turned =
       options.camera.orbit_deg * static_cast<float>(index) / static_cast<float>(std::max<std::size_t>(count, 1));
   return fitted_view(seen, survey.up.axis, options.camera, turned, options.width, options.height);
