@@ -12,7 +12,7 @@ namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kMapSize = 1024, kSolidsSize = 512, kLeastSize = 128;
+constexpr int kMapSize = 1024, kSolidsSize = 384, kLeastSize = 128;
 /// Where there is nothing but the ground its rays need no picture of it.
 constexpr int kGroundSize = 32;
 /// Part of the box's longer side that is left around it for light that slopes bend outwards.

@@ -16,6 +16,7 @@ constexpr float kUpright = 0.15f;
 /// Where the squares of points at the water's border are looked at, in steps from the point: a turned square, so that
 /// upright and level edges count finely too.
 constexpr vec2 kPlaces[] = {{-0.375f, -0.125f}, {0.125f, -0.375f}, {0.375f, 0.125f}, {-0.125f, 0.375f}};
+constexpr int kTile = 8;  ///< points
 constexpr std::size_t kPlaceCount = std::size(kPlaces);
 
 /// What a surface may say in other words: depths that are not finite, normals without length.
@@ -30,18 +31,22 @@ void look_at_border(const Surface& surface, VirtualScreen& screen) {
   std::vector<std::size_t> border;
   std::vector<vec2> places;
   Image<float>& coverage = screen.seen.coverage;
-  for (int y = 0; y < screen.height; ++y)
-    for (int x = 0; x < screen.width; ++x) {
-      const float here = coverage(x, y);
-      bool differs = false;
-      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, screen.height - 1); ++v)
-        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, screen.width - 1); ++u)
-          differs = differs || coverage(u, v) != here;
-      if (!differs) continue;
-      border.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(screen.width) +
-                       static_cast<std::size_t>(x));
-      for (const vec2 place : kPlaces) places.push_back(screen.picture(x, y) + place * screen.step);
-    }
+  const auto add = [&](int x, int y) {
+    const float here = coverage(x, y);
+    bool differs = false;
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, screen.height - 1); ++v)
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, screen.width - 1); ++u)
+        differs = differs || coverage(u, v) != here;
+    if (!differs) return;
+    border.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(screen.width) +
+                     static_cast<std::size_t>(x));
+    for (const vec2 place : kPlaces) places.push_back(screen.picture(x, y) + place * screen.step);
+  };
+  // Tile by tile, so that places that follow each other lie close together.
+  for (int top = 0; top < screen.height; top += kTile)
+    for (int left = 0; left < screen.width; left += kTile)
+      for (int y = top; y < std::min(top + kTile, screen.height); ++y)
+        for (int x = left; x < std::min(left + kTile, screen.width); ++x) add(x, y);
   if (border.empty()) return;
   const SurfaceBuffers fine = surface.refine(screen.view, screen.seen, places);
   const bool thick = fine.thickness.size() == places.size() && !screen.seen.thickness.empty();
