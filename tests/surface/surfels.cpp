@@ -107,6 +107,30 @@ TEST(Surfels, CurvatureOfADropIsOneOverItsRadius) {
   }
 }
 
+TEST(Surfels, OfAStraightJetBendAcrossItsAxisByOneOverItsRadius) {
+  const vec3 axis = glm::normalize(vec3{0.6f, -0.7f, 0.3f});
+  Particles jet;
+  for (int i = -40; i <= 40; ++i) add(jet, 0.25f * kSpacing * static_cast<float>(i) * axis);
+  for (const Kernel kernel : kKernels) {
+    SurfelOptions by = surfel_options();
+    by.kernel = kernel;
+    by.keep_thin = false;
+    by.grid_step = 0.25f * kSpacing;
+    std::size_t count = 0;
+    for (const Surfel& surfel : extract_surfels(jet, by)) {
+      const float along = glm::dot(surfel.position, axis);
+      if (std::abs(along) > 5 * kSpacing) continue;  // the ends are round
+      const float radius = glm::length(surfel.position - along * axis), size = glm::length(surfel.bend);
+      EXPECT_NEAR((surfel.curvature + size) * radius, 1.0f, 0.02f) << name_of(kernel);
+      EXPECT_NEAR((surfel.curvature - size) * radius, 0.0f, 0.1f) << name_of(kernel);  // ripple of the particles
+      EXPECT_NEAR(glm::dot(surfel.bend, axis) / size, 0.0f, 0.02f);
+      EXPECT_NEAR(glm::dot(surfel.bend, surfel.normal) / size, 0.0f, 1e-3f);
+      ++count;
+    }
+    EXPECT_GT(count, 300u);
+  }
+}
+
 TEST(Surfels, HaveTheSameBitsForAnyNumberOfThreads) {
   const Particles water = wavy_tank();
   const View view = looking_at(water.bounds(), {1, -1, 0.4f}, Projection::perspective, 150, 130);
