@@ -9,7 +9,6 @@
 namespace meniscus {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Over this part of a pixel behind the water light goes over from all to none, so that its waterline is no stairs.
 constexpr float kSoftDepth = 1.0f;
 

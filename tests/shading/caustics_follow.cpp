@@ -185,6 +185,16 @@ TEST(DropOverThePool, ThrowsNoFalseShadow) {
   EXPECT_NEAR(axis.path, 2 * kRadius + 0.1, 5e-3);
 }
 
+TEST(DropOverThePool, CastsTheSameBitsForAnyNumberOfThreads) {
+  std::vector<std::vector<vec3>> results;
+  for (const int threads : {1, 3}) {
+    const ThreadLimit limit(threads);
+    const LightCast light = cast(BallOverPool(0.425, 0.1), floor_at(0), tests::clear());
+    results.emplace_back(light.maps.at(0).texels().begin(), light.maps.at(0).texels().end());
+  }
+  EXPECT_EQ(results[0], results[1]);
+}
+
 TEST(DropOverThePool, IsPartOfThePoolWithASingleInterface) {
   const LightCast single = cast(BallOverPool(0.9, 0.4), floor_at(0), tests::clear(), true);
   for (const Landing& landing : single.landings) {
