@@ -41,17 +41,18 @@ Range seen(float c, float half, float z, float deep) {
   return {low / (low < 0 ? nearest : farthest), high / (high > 0 ? nearest : farthest)};
 }
 
-/// The disc's form from its mean curvature and bend: S = k b b + l c c + m n n, with the larger curvature k along b,
-/// the smaller one l along c, and m that of them which is larger in size, so that balls and cylinders are met exactly.
+/// The disc's form from its mean curvature and half of its bend (the whole of it leaves single pixels open where a
+/// rippled surface is seen at a slant): S = k b b + l c c + m n n, with the larger curvature k along b, the smaller one
+/// l along c, and m that of them which is larger in size, so that balls and cylinders are met exactly.
 void set_form(const Camera& camera, const Surfel& surfel, float side, SurfelDisc& disc) {
-  const float size = glm::length(surfel.bend);
+  const float size = 0.5f * glm::length(surfel.bend);
   const float k = side * (surfel.curvature + size), l = side * (surfel.curvature - size),
               m = std::abs(k) > std::abs(l) ? k : l;
   const vec3 n = disc.normal;
   disc.straight = vec3{l} + (m - l) * n * n;
   disc.skew = (m - l) * vec3{n.y * n.z, n.z * n.x, n.x * n.y};
   if (!(size > 0.0f)) return;
-  const vec3 b = camera.turned(surfel.bend / size);
+  const vec3 b = camera.turned(0.5f * surfel.bend / size);
   disc.straight += (k - l) * b * b;
   disc.skew += (k - l) * vec3{b.y * b.z, b.z * b.x, b.x * b.y};
 }
