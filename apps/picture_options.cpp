@@ -253,6 +253,9 @@ void PictureArguments::add_light(CLI::App& command) {
         p.caustics_options.screen_height = size.height;
       },
       "Size of the virtual screen that light is cast from, px (default: 512 along the longer side)");
+  group.flag(
+      "--caustics-single-interface", [](PictureOptions& p) { p.caustics_options.single_interface = true; },
+      "Light goes on to the solids after the first interface, as published (default: out of drops, into others)");
   group.text(
       "--caustics-direction", "light|up",
       [](PictureOptions& p, const std::string& name) {

@@ -62,10 +62,13 @@ Image<vec3> shade(const View& view, std::span<const vec2> points, const SurfaceB
 /// The water's soft shadow: the surface's thickness seen from the sun, with Fresnel and Beer-Lambert losses, blurred
 /// by the sun's size, and the sky light that the water takes away around it. For liquids that light does not pass, and
 /// for clear ones where caustics are not wanted.
-/// @param region  where the water mostly is, m, so that a few drops far away do not coarsen it; empty: all of it
+/// @param region     where the water mostly is, m, so that a few drops far away do not coarsen it; empty: all of it
+/// @param on_bodies  there are bodies that stand out of the water: what is before it, as the sun sees it, is in full
+///                   light. Else only what is under the water is asked for
 std::shared_ptr<const WaterLight> soft_shadow(const Surface& surface, const Environment& environment,
                                               const Ground& ground, const Material& material,
-                                              StageTimes* times = nullptr, const Bounds& region = {});
+                                              StageTimes* times = nullptr, const Bounds& region = {},
+                                              bool on_bodies = false);
 
 /// Where the virtual screen that light is cast from stands.
 enum class ScreenDirection {
@@ -86,7 +89,7 @@ struct CausticsOptions {
   /// Texels along the longer side of the map that the triangles are drawn into; 0: five to four points of the screen,
   /// 128 .. 1024.
   int map_size = 0;
-  int most_lights = 4;      ///< sun and lamps that make caustics, the brightest first
+  int most_lights = 4;  ///< sun and lamps that make caustics, the brightest first
 };
 
 /// Light that water bends onto the solids, drawn as caustics triangles.                  [Iwasaki2008] 5.1
@@ -101,7 +104,7 @@ std::shared_ptr<const WaterLight> caustics(const Surface& surface, const Scene& 
 struct CausticsReport {
   std::size_t triangles = 0;
   double entered = 0, absorbed = 0, landed = 0;  ///< power of all channels together, W
-  double mirrored = 0;  ///< lost at later interfaces or not followed further, W
+  double mirrored = 0;                           ///< lost at later interfaces or not followed further, W
   double psnr_db = 0;       ///< of the first map against photons; white is four times the photons' mean
   double reference_ms = 0;  ///< of the photons
 };

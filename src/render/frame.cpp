@@ -26,8 +26,8 @@ Scene lit_scene(const Surface& surface, const FrameSettings& settings, StageTime
     scene.set_water_light(
         caustics(surface, scene, settings.material, settings.caustics_options, times, settings.water));
   else if (settings.shadow)
-    scene.set_water_light(
-        soft_shadow(surface, settings.environment, settings.ground, settings.material, times, settings.water));
+    scene.set_water_light(soft_shadow(surface, settings.environment, settings.ground, settings.material, times,
+                                      settings.water, has_solids));
   return scene;
 }
 

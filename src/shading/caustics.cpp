@@ -10,7 +10,7 @@
 namespace meniscus {
 namespace {
 
-constexpr int kLargestScreen = 1 << 14;
+constexpr int kLargestScreen = 1 << 12;
 
 void require(bool valid, const char* name, double value, const char* expected) {
   if (!valid)
@@ -25,16 +25,16 @@ void require(bool valid, const char* name, double value, const char* expected) {
 
 void require_options(const CausticsOptions& options) {
   require(options.screen_width >= 0 && options.screen_width <= kLargestScreen, "screen width", options.screen_width,
-          "0 .. 16384 px");
+          "0 .. 4096 px");
   require(options.screen_height >= 0 && options.screen_height <= kLargestScreen, "screen height", options.screen_height,
-          "0 .. 16384 px");
+          "0 .. 4096 px");
   require(options.screen_width != 1 && options.screen_height != 1, "screen", 1, "at least 2 px a side");
   require(options.iterations >= 1 && options.iterations <= 256, "number of iterations", options.iterations, "1 .. 256");
   require(options.threshold >= 0 && std::isfinite(options.threshold), "threshold",
           static_cast<double>(options.threshold), "a length >= 0 m");
   require(
       options.map_size >= 0 && options.map_size <= kLargestScreen && (options.map_size == 0 || options.map_size > 15),
-      "map size", options.map_size, "0, or 16 .. 16384 texels");
+      "map size", options.map_size, "0, or 16 .. 4096 texels");
   require(options.most_lights >= 0, "number of lights", options.most_lights, ">= 0");
 }
 
@@ -94,7 +94,7 @@ std::shared_ptr<const WaterLight> caustics(const Surface& surface, const Scene& 
   std::shared_ptr<const WaterLight> sky;
   {
     const StageTimer timer(times, "caustics sky");
-    sky = sky_shadow(surface, scene.environment(), scene.ground(), material, region);
+    sky = sky_shadow(surface, scene.environment(), scene.ground(), material, region, !scene.solid_bounds().empty());
   }
   return std::make_shared<Caustics>(std::move(casts), scene.lamps(), std::move(sky));
 }

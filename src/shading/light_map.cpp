@@ -101,7 +101,11 @@ void blur_finely(Image<vec3>& image, float sigma_px) {
   image = std::move(result);
 }
 
-LightMap::LightMap(const View& view, Image<Fractions> texels) : texels_(std::move(texels)) {
+LightMap::LightMap(const View& view, Image<Fractions> texels, Image<float> first)
+    : texels_(std::move(texels)),
+      first_(std::move(first)),
+      z_axis_(view.forward),
+      z_origin_(glm::dot(view.forward, view.eye)) {
   const float per_metre = 1.0f / view.pixel_size(0.0f);
   x_axis_ = view.right * per_metre;
   y_axis_ = -view.up * per_metre;
@@ -115,6 +119,7 @@ WaterLight::Light LightMap::at(vec3 point, vec3) const {
         y < static_cast<float>(texels_.height() - 1)))
     return {};
   const int i = static_cast<int>(x), j = static_cast<int>(y);
+  if (!first_.empty() && glm::dot(z_axis_, point) - z_origin_ < first_(i, j)) return {};
   const Fractions* above = texels_.row(j) + i;
   const Fractions* below = texels_.row(j + 1) + i;
   const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);

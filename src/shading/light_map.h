@@ -14,7 +14,9 @@ class LightMap : public WaterLight {
     vec3 sky;
   };
   /// @param view  orthographic, along the sun's rays; of the texels' size
-  LightMap(const View& view, Image<Fractions> texels);
+  /// @param first  of the texels' size: where along the view the water begins, m; points before it are in full light.
+  ///               Empty: there are none
+  LightMap(const View& view, Image<Fractions> texels, Image<float> first = {});
   Light at(vec3 point, vec3 normal) const override;
 
  private:
@@ -22,11 +24,15 @@ class LightMap : public WaterLight {
   vec3 x_axis_, y_axis_;
   vec2 origin_;
   Image<Fractions> texels_;
+  Image<float> first_;
+  vec3 z_axis_;  ///< depth in m: z_axis_ . point - z_origin_
+  float z_origin_;
 };
 
 /// Only what the water takes away of the sky's light, as soft_shadow() has it, in coarse texels; the sun's part is one.
 std::shared_ptr<const WaterLight> sky_shadow(const Surface& surface, const Environment& environment,
-                                             const Ground& ground, const Material& material, const Bounds& region);
+                                             const Ground& ground, const Material& material, const Bounds& region,
+                                             bool on_bodies);
 
 /// Blurs by three box filters, which come close to a Gaussian; beyond the edge the edge's value goes on.
 void blur(Image<vec3>& image, float sigma_px);

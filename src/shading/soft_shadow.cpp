@@ -77,15 +77,36 @@ Image<vec3> gathered(const Image<vec3>& arriving, const Image<float>& smooth, fl
   return result;
 }
 
+/// Where the water begins along the view, a little before it, for every texel within `reach` of it; 0 farther off.
+Image<float> beginning(const Surface& surface, const View& view, int reach, float margin) {
+  Image<float> depth = surface.see(view).depth;
+  // The least of a row's neighbours, then of a column's.
+  for (const bool rows : {true, false}) {
+    const Image<float> before = depth;
+    parallel_for(static_cast<std::size_t>(view.height), 16, [&](std::size_t begin, std::size_t end) {
+      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+        for (int x = 0; x < view.width; ++x)
+          for (int k = -reach; k <= reach; ++k) {
+            const int u = std::clamp(rows ? x + k : x, 0, view.width - 1);
+            const int v = std::clamp(rows ? y : y + k, 0, view.height - 1);
+            depth(x, y) = std::min(depth(x, y), before(u, v));
+          }
+    });
+  }
+  for (float& value : depth) value = value < 1e30f ? value - margin : 0.0f;
+  return depth;
+}
+
 /// No water: all light everywhere.
 class Unshadowed : public WaterLight {
  public:
   Light at(vec3, vec3) const override { return {}; }
 };
 
-/// @param sun_too  false: the sky's part alone
+/// @param sun_too    false: the sky's part alone
+/// @param on_bodies  leave what stands out of the water in full light
 std::shared_ptr<const WaterLight> shadow(const Surface& surface, const Environment& environment, const Ground& ground,
-                                         const Material& material, const Bounds& region, bool sun_too) {
+                                         const Material& material, const Bounds& region, bool sun_too, bool on_bodies) {
   Bounds bounds = surface.bounds();
   if (!region.empty() && !bounds.empty()) {
     const Bounds common{glm::max(bounds.low, region.low), glm::min(bounds.high, region.high)};
@@ -146,21 +167,24 @@ std::shared_ptr<const WaterLight> shadow(const Surface& surface, const Environme
       const vec3 sky_part = glm::clamp(1.0f - held_back * cover(x, y), vec3{0.0f}, vec3{1.0f});
       map(x, y) = {glm::mix(vec3{1.0f}, sun_part, presence), glm::mix(vec3{1.0f}, sky_part, presence)};
     }
-  return std::make_shared<LightMap>(view, std::move(map));
+  Image<float> first;
+  if (on_bodies) first = beginning(surface, view, std::max(2, static_cast<int>(2.0f * kPenumbra * texels)), texel);
+  return std::make_shared<LightMap>(view, std::move(map), std::move(first));
 }
 
 }  // namespace
 
 std::shared_ptr<const WaterLight> soft_shadow(const Surface& surface, const Environment& environment,
                                               const Ground& ground, const Material& material, StageTimes* times,
-                                              const Bounds& region) {
+                                              const Bounds& region, bool on_bodies) {
   const StageTimer timer(times, "shadow");
-  return shadow(surface, environment, ground, material, region, true);
+  return shadow(surface, environment, ground, material, region, true, on_bodies);
 }
 
 std::shared_ptr<const WaterLight> sky_shadow(const Surface& surface, const Environment& environment,
-                                             const Ground& ground, const Material& material, const Bounds& region) {
-  return shadow(surface, environment, ground, material, region, false);
+                                             const Ground& ground, const Material& material, const Bounds& region,
+                                             bool on_bodies) {
+  return shadow(surface, environment, ground, material, region, false, on_bodies);
 }
 
 }  // namespace meniscus

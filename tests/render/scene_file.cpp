@@ -40,7 +40,7 @@ std::string described(const SceneFile& s) {
   text += fmt::format("optics {} {} {} {}\n", static_cast<int>(p.optics.refraction), p.optics.iterations,
                       p.optics.threshold, p.optics.bounces);
   text += fmt::format("caustics {} {} {} {} {} {} {} {} {}\n", p.caustics, c.screen_width, c.screen_height,
-                      static_cast<int>(c.screen), c.iterations, c.threshold, c.exact_hits, c.map_size, c.most_lights);
+                      static_cast<int>(c.screen), c.iterations, c.threshold, c.exact_hits + 2 * c.single_interface, c.map_size, c.most_lights);
   text += fmt::format("camera {} {} {} {} {} {} {} {} {} {}\n", p.camera.eye.has_value(), p.camera.target.has_value(),
                       text_of(p.camera.azimuth_deg), text_of(p.camera.elevation_deg), text_of(p.camera.distance),
                       text_of(p.camera.orthographic_height), p.camera.fov_deg, p.camera.margin, p.camera.orbit_deg,
@@ -168,6 +168,7 @@ TEST_F(SceneFileFields, EachChangeSomething) {
                            "\"caustics\": {\"iterations\": 3}",
                            "\"caustics\": {\"threshold\": 3}",
                            "\"caustics\": {\"exact_hits\": true}",
+                           "\"caustics\": {\"single_interface\": true}",
                            "\"caustics\": {\"map_size\": 3}",
                            "\"caustics\": {\"most_lights\": 3}",
                            "\"picture\": {\"size\": [640, 720]}",

@@ -13,7 +13,18 @@ class Body : public Surface {
  public:
   static constexpr float kPeriod = 1.0f;
   Body(vec3 half, bool ball, float wave = 0) : half_(half), ball_(ball), wave_(wave) {}
-  SurfaceBuffers see(const View&, std::span<const vec2>, StageTimes*) const override { return {}; }
+  /// The depth alone, as if from above: where the body's box begins.
+  SurfaceBuffers see(const View& view, std::span<const vec2>, StageTimes*) const override {
+    SurfaceBuffers seen;
+    seen.depth = Image<float>(view.width, view.height, std::numeric_limits<float>::infinity());
+    const Image<float> chords = thickness(view, {}, nullptr);
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x) {
+        const Ray ray = view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
+        if (chords(x, y) > 0) seen.depth(x, y) = (2 * half_.y - ray.origin.y) / ray.direction.y;
+      }
+    return seen;
+  }
   Image<float> thickness(const View& view, std::span<const vec2>, StageTimes*) const override {
     Image<float> image(view.width, view.height);
     for (int y = 0; y < view.height; ++y)
@@ -144,6 +155,16 @@ TEST(SoftShadow, GivesTheSameBitsForAnyNumberOfThreads) {
   for (float x = -1; x < 1; x += 0.013f) {
     EXPECT_EQ(lights[0]->at({x, 0, 0.1f}, vec3{0, 1, 0}).sun, lights[1]->at({x, 0, 0.1f}, vec3{0, 1, 0}).sun);
     EXPECT_EQ(lights[0]->at({x, 0, 0.1f}, vec3{0, 1, 0}).sky, lights[2]->at({x, 0, 0.1f}, vec3{0, 1, 0}).sky);
+  }
+}
+
+TEST(SoftShadow, LeavesBodiesThatStandOutOfTheWaterInFullLight) {
+  const Material clay = material_preset("clay", 1.0f);
+  for (const bool on_bodies : {false, true}) {
+    const auto light =
+        soft_shadow(Body({2, 0.5f, 2}, false), under_sun({0, 1, 0}), Ground{}, clay, nullptr, {}, on_bodies);
+    EXPECT_LT(light->at({0, -1.0f, 0}, {0, 1, 0}).sun.y, 0.1f) << "under it";
+    EXPECT_EQ(light->at({0, 1.0f, 0}, {0, 1, 0}).sun.y > 0.99f, on_bodies) << "above it";
   }
 }
 
