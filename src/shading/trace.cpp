@@ -102,7 +102,14 @@ class Tracer {
     if (!(crossing.distance < kInfinity)) return end(path, to_solid, to_solid);
     float distance = crossing.distance;
     vec3 normal = crossing.normal;
-    flatten_at_walls(scene_.tank(), spacing_, path.ray, distance, normal);
+    // A wall that the ray just came through is not where it crosses next: pulled back onto it, a path would stay there.
+    float flat_distance = distance;
+    vec3 flat_normal = normal;
+    flatten_at_walls(scene_.tank(), spacing_, path.ray, flat_distance, flat_normal);
+    if (glm::dot(flat_normal, path.ray.direction) * (path.inside ? 1.0f : -1.0f) > 0) {
+      distance = flat_distance;
+      normal = flat_normal;
+    }
     if (path.inside && spacing_ > 0 && to_solid < kInfinity) {
       // Water that stands on a solid has no far side there.
       const float gap = (to_solid - distance) / spacing_;
