@@ -155,13 +155,17 @@ void flatten_at_walls(const Tank& tank, float spacing, const Ray& ray, float& di
     const float gap = std::abs(point[k] - wall) / spacing;
     const float weight = (1.0f - glm::smoothstep(0.8f, 1.6f, gap)) * glm::smoothstep(0.5f, 0.85f, side * outwards[k]);
     if (!(weight > 0)) continue;
+    // From within the tank only a face along the wall is drawn onto it: from the rounded edge of the water's level the
+    // way to the wall leads through the air.
+    const bool within = side * (wall - point[k]) > 0;
+    const float pull = within ? weight * glm::smoothstep(0.78f, 0.93f, side * outwards[k]) : weight;
     vec3 normal{0.0f};
     normal[k] = side;
     outwards = glm::normalize(glm::mix(outwards, normal, weight));
     const float along = ray.direction[k];
     if (!(std::abs(along) > 0.05f)) continue;
     const float at_wall = (wall - ray.origin[k]) / along;
-    if (at_wall >= 0 && std::abs(at_wall - distance) < 4.0f * spacing) distance = glm::mix(distance, at_wall, weight);
+    if (at_wall >= 0 && std::abs(at_wall - distance) < 4.0f * spacing) distance = glm::mix(distance, at_wall, pull);
   }
 }
 

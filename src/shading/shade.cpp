@@ -13,6 +13,8 @@ namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Spacings between water and a solid that it stands against.
+constexpr float kAgainst = 1.5f;
 constexpr std::size_t kGrain = 1024;
 constexpr int kTile = 32, kBlock = 4;  ///< px; kTile^2 = kGrain
 
@@ -132,6 +134,12 @@ class Shading {
 
     // A solid before the water hides it; an eye in the water has its own order.
     if (!water_.eye_in_water && coverage > 0 && scene_.distance(ray) < depth) coverage = 0;
+    if (water_.eye_in_water && coverage > 0) {
+      // Water that ends just before a solid stands against it: there is no surface between them.
+      const SolidHit solid = scene_.hit(ray, beam_);
+      const float gap = solid.distance - depth;
+      if (solid.found() && gap * -glm::dot(ray.direction, solid.face_normal) < kAgainst * spacing_) coverage = 0;
+    }
     if (coverage < 1.0f)
       picture_[i] = water_.eye_in_water ? deep_radiance(ray, beam_, scene_, material_) : background(ray, beam_, scene_);
     pixel.coverage = coverage;

@@ -168,7 +168,7 @@ std::shared_ptr<const WaterLight> shadow(const Surface& surface, const Environme
       map(x, y) = {glm::mix(vec3{1.0f}, sun_part, presence), glm::mix(vec3{1.0f}, sky_part, presence)};
     }
   Image<float> first;
-  if (on_bodies) first = beginning(surface, view, std::max(2, static_cast<int>(2.0f * kPenumbra * texels)), texel);
+  if (on_bodies) first = beginning(surface, view, std::max(2, static_cast<int>(3.0f * kSkyBlur * texels)), texel);
   return std::make_shared<LightMap>(view, std::move(map), std::move(first));
 }
 

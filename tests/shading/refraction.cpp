@@ -152,6 +152,17 @@ TEST(FlatSides, StandAgainstATanksWalls) {
   flatten_at_walls(tank, spacing, ray, distance, normal);
   EXPECT_NEAR(distance, 1.0f, 1e-6f);
   EXPECT_LT(glm::length(normal - vec3{1, 0, 0}), 1e-6f);
+  // The rounded edge of the water's level turns, and stays where it is: the way to the pane leads through the air.
+  distance = 1.025f;
+  normal = glm::normalize(vec3{0.7f, 0.71f, 0});
+  flatten_at_walls(tank, spacing, ray, distance, normal);
+  EXPECT_EQ(distance, 1.025f);
+  EXPECT_GT(normal.x, 0.75f);
+  // Bulging through the pane it is cut off there.
+  distance = 0.99f;
+  normal = glm::normalize(vec3{1, 0.1f, 0});
+  flatten_at_walls(tank, spacing, ray, distance, normal);
+  EXPECT_NEAR(distance, 1.0f, 1e-6f);
   // The top of the water, and water in the middle, stay.
   for (const vec3 other : {vec3{0.1f, 1, 0}, vec3{-1, 0, 0}}) {
     distance = 1.025f;
