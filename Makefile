@@ -9,7 +9,7 @@ all: build
 build: build/release/build.ninja
 	cmake --build --preset release --parallel $(JOBS)
 
-# A short film and a still from the frames in data/, with the program alone: no test is built.
+# A short film and two stills from data/ and examples/, with the program alone: no test is built.
 demo: build/release/build.ninja
 	cmake --build --preset release --parallel $(JOBS) --target meniscus_app
 	tools/demo.sh $(PROGRAM)
