@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -63,7 +64,7 @@ TEST(CameraPath, StandsStillBeforeItsFirstKeyAndAfterItsLast) {
 
 /// Reads a camera file of this text; returns the error's message, empty if there was none.
 std::string error_of(const std::string& text) {
-  const std::string path = ::testing::TempDir() + "camera_path_test.json";
+  const std::string path = ::testing::TempDir() + "camera_path_" + std::to_string(::getpid()) + ".json";
   std::ofstream(path) << text;
   std::string message;
   try {

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -12,7 +13,9 @@ namespace {
 /// A directory of small text frames, removed at the end.
 class Frames {
  public:
-  Frames() : directory_(::testing::TempDir() + "survey_test") { std::filesystem::create_directories(directory_); }
+  Frames() : directory_(::testing::TempDir() + "survey_" + std::to_string(::getpid())) {
+    std::filesystem::create_directories(directory_);
+  }
   ~Frames() { std::filesystem::remove_all(directory_); }
   /// A cube of 4 x 4 x 4 particles, 0.1 m apart, moved along x.
   void add_cube(int number, float x) {

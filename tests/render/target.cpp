@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -28,15 +29,15 @@ TEST(OutputTarget, PutsTheFrameNumberIntoItsPattern) {
 }
 
 TEST(OutputTarget, MakesItsDirectoryAndLeavesNothingElseThere) {
-  const std::string directory = ::testing::TempDir() + "target_test/deep/er";
+  const std::string directory = ::testing::TempDir() + "target_" + std::to_string(::getpid()) + "/deep/er";
   OutputTarget(directory + "/{}.png").prepare();
   EXPECT_TRUE(std::filesystem::is_directory(directory));
   EXPECT_TRUE(std::filesystem::is_empty(directory));
-  std::filesystem::remove_all(::testing::TempDir() + "target_test");
+  std::filesystem::remove_all(::testing::TempDir() + "target_" + std::to_string(::getpid()));
 }
 
 TEST(OutputTarget, RefusesAPlaceThatCannotBeWrittenAndNamesIt) {
-  const std::string file = ::testing::TempDir() + "target_test_file";
+  const std::string file = ::testing::TempDir() + "target_" + std::to_string(::getpid()) + "_file";
   std::ofstream(file) << "x";
   for (const std::string& path : {file + "/still.png", std::string("/proc/nowhere/still.png")}) {
     try {
