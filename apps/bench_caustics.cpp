@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "bench_options.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/render.h"
@@ -76,37 +77,24 @@ Json measure(const CausticsArguments& arguments) {
   return json;
 }
 
+void print(const Json& json) {
+  for (const auto& [name, value] : json.items()) std::cout << fmt::format("  {:<14}{}\n", name, value.dump());
+}
+
 }  // namespace
 
 void add_bench_caustics(CLI::App& bench) {
   CLI::App* command = bench.add_subcommand("caustics", "Light cast through the water of a wavy tank");
   const auto arguments = std::make_shared<CausticsArguments>();
-  command->add_option("--particles", arguments->particles, "Particles in the tank (default: 150000)")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}).description(""));
-  command
-      ->add_option_function<std::string>(
-          "--screen", [arguments](const std::string& text) { arguments->screen = parse_size("--screen", text); },
-          "Size of the virtual screen, px (default: 256x64)")
-      ->type_name("WIDTHxHEIGHT");
-  command->add_option("--repeat", arguments->repeat, "Runs that the median is taken of (default: 5)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""));
-  command->add_option("--threads", arguments->threads, "Threads; 0: one a core (default: 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024).description(""));
+  add_particles(*command, arguments->particles, 1, 4'000'000'000, "Particles in the tank (default: 150000)");
+  add_size(*command, "--screen", arguments->screen, "Size of the virtual screen, px (default: 256x64)");
+  add_repeat(*command, arguments->repeat, "Runs that the median is taken of (default: 5)");
+  add_threads(*command, arguments->threads);
   command->add_flag("--exact-hits", arguments->exact_hits, "Meet the floor by rays instead of the geometry map");
   command->add_flag("--single-interface", arguments->single_interface, "Light that has entered the water stays in it");
   command->add_flag("--reference", arguments->reference, "Compare the map with photons");
-  command->add_flag("--json", arguments->json, "Print one JSON object");
-  command->callback([arguments] {
-    const Json json = measure(*arguments);
-    if (arguments->json) {
-      std::cout << text_of(json) << '\n';
-      return;
-    }
-    for (const auto& [name, value] : json.items()) std::cout << fmt::format("  {:<14}{}\n", name, value.dump());
-  });
+  add_json(*command, arguments->json);
+  run_with(*command, arguments, measure, print);
 }
 
 }  // namespace meniscus::apps

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "bench_options.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/formulas/kernels.h"
@@ -120,33 +121,21 @@ void print(const Json& json) {
 void add_bench_density(CLI::App& bench) {
   CLI::App* command = bench.add_subcommand("density", "The density of a wavy tank on a grid, by splatted discs");
   const auto arguments = std::make_shared<DensityArguments>();
-  command->add_option("--particles", arguments->particles, "Particles in the tank (default: 150000)")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}).description(""));
+  add_particles(*command, arguments->particles, 1, 100'000'000, "Particles in the tank (default: 150000)");
   command->add_option("--grid", arguments->grid, "Points along each axis of the grid (default: 256)")
       ->type_name("N")
       ->check(CLI::Range(2, 1024).description(""));
-  command->add_option("--seed", arguments->seed, "Of the particles' places (default: 1)")->type_name("N");
-  command->add_option("--repeat", arguments->repeats, "Runs that the median is taken of (default: 7)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""));
-  command->add_option("--threads", arguments->threads, "Threads; 0: one a core (default: 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024).description(""));
-  command->add_flag("--json", arguments->json, "Print one JSON object");
+  add_seed(*command, arguments->seed);
+  add_repeat(*command, arguments->repeats, "Runs that the median is taken of (default: 7)");
+  add_threads(*command, arguments->threads);
+  add_json(*command, arguments->json);
   command->footer(
       "splat_ms is the median time of the whole: sorting the particles and splatting all slabs. direct_ms is the "
       "better\n"
       "of two runs of a plain loop over each particle's own box, in float on one thread. relative_difference is the "
       "RMS\n"
       "of the difference to sums in double precision over the RMS of the density.");
-  command->callback([arguments] {
-    const Json json = measure(*arguments);
-    if (arguments->json)
-      std::cout << text_of(json) << '\n';
-    else
-      print(json);
-  });
+  run_with(*command, arguments, measure, print);
 }
 
 }  // namespace meniscus::apps

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "bench_options.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/render.h"
@@ -124,47 +125,30 @@ Json measure(const PointSampledArguments& arguments) {
   return json;
 }
 
+void print(const Json& json) {
+  for (const auto& [name, value] : json.items()) std::cout << fmt::format("  {:<36}{}\n", name, value.dump());
+}
+
 }  // namespace
 
 void add_bench_point_sampled(CLI::App& bench) {
   CLI::App* command =
       bench.add_subcommand("point_sampled", "Frames of a pool with waves, sampled by points, with caustics");
   const auto arguments = std::make_shared<PointSampledArguments>();
-  command->add_option("--particles", arguments->particles, "Particles in the pool, about (default: 150000)")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1000}, std::size_t{100'000'000}).description(""));
-  command
-      ->add_option_function<std::string>(
-          "--size", [arguments](const std::string& text) { arguments->size = parse_size("--size", text); },
-          "Size of the picture, px (default: 512x512)")
-      ->type_name("WIDTHxHEIGHT");
-  command
-      ->add_option_function<std::string>(
-          "--screen", [arguments](const std::string& text) { arguments->screen = parse_size("--screen", text); },
-          "Size of the virtual screen, px (default: 256x64)")
-      ->type_name("WIDTHxHEIGHT");
+  add_particles(*command, arguments->particles, 1000, 100'000'000, "Particles in the pool, about (default: 150000)");
+  add_size(*command, "--size", arguments->size, "Size of the picture, px (default: 512x512)");
+  add_size(*command, "--screen", arguments->screen, "Size of the virtual screen, px (default: 256x64)");
   command->add_option("--grid-step", arguments->grid_step, "Between points of the grid, spacings (default: 0.5)")
       ->type_name("STEP")
       ->check(CLI::Range(0.1, 4.0).description(""));
-  command->add_option("--repeat", arguments->repeat, "Frames that the median is taken of (default: 5)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""));
-  command->add_option("--threads", arguments->threads, "Threads; 0: one a core (default: 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024).description(""));
-  command->add_flag("--json", arguments->json, "Print one JSON object");
+  add_repeat(*command, arguments->repeat, "Frames that the median is taken of (default: 5)");
+  add_threads(*command, arguments->threads);
+  add_json(*command, arguments->json);
   command->footer(
       "A frame is the splatted surface, caustics with a single interface from a level screen, the picture of the "
       "scene\n"
       "and reflection and refraction in image space. Construction is the density and the surfels.");
-  command->callback([arguments] {
-    const Json json = measure(*arguments);
-    if (arguments->json) {
-      std::cout << text_of(json) << '\n';
-      return;
-    }
-    for (const auto& [name, value] : json.items()) std::cout << fmt::format("  {:<36}{}\n", name, value.dump());
-  });
+  run_with(*command, arguments, measure, print);
 }
 
 }  // namespace meniscus::apps

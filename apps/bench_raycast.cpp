@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "bench_options.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/render.h"
@@ -215,40 +216,24 @@ void print(const Json& json) {
 void add_bench_raycast(CLI::App& bench) {
   CLI::App* command = bench.add_subcommand("raycast", "The ray-cast surface of a wavy tank with drops");
   const auto arguments = std::make_shared<RaycastArguments>();
-  command->add_option("--particles", arguments->particles, "Particles in the tank (default: 1000000)")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}).description(""));
-  command
-      ->add_option_function<std::string>(
-          "--size", [arguments](const std::string& text) { arguments->size = parse_size("--size", text); },
-          "Size of the picture, px (default: 1024x1024)")
-      ->type_name("WIDTHxHEIGHT");
-  command->add_option("--seed", arguments->seed, "Of the particles' places (default: 1)")->type_name("N");
-  command->add_option("--repeat", arguments->frames, "Frames that the median is taken of (default: 5)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""));
-  command->add_option("--threads", arguments->threads, "Threads; 0: one a core (default: 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024).description(""));
+  add_particles(*command, arguments->particles, 1, 4'000'000'000, "Particles in the tank (default: 1000000)");
+  add_size(*command, "--size", arguments->size, "Size of the picture, px (default: 1024x1024)");
+  add_seed(*command, arguments->seed);
+  add_repeat(*command, arguments->frames, "Frames that the median is taken of (default: 5)");
+  add_threads(*command, arguments->threads);
   command
       ->add_option("--instruction-set", arguments->instruction_set,
                    "Vector instructions to use, such as avx3, avx2, sse4 or best (default: best)")
       ->type_name("NAME");
   command->add_flag("--iso-sweep", arguments->iso_sweep, "Measure for iso-values from 0.3 to 0.7 as well");
-  command->add_flag("--json", arguments->json, "Print one JSON object");
+  add_json(*command, arguments->json);
   command->footer(
       "A frame is the building of the surface from the particles and one look at it: depth, normals, thickness.\n"
       "The plain method computes the same surface ray by ray with one thread. Where a whole picture of it takes\n"
       "more than three seconds it is measured at every fifth pixel across and down (plain_measured_size) and at\n"
       "every eleventh, and the time for all pixels follows from both. Both methods' hits and depths are compared\n"
       "at the pixels that the plain one has computed (compared_pixels).");
-  command->callback([arguments] {
-    const Json json = measure(*arguments);
-    if (arguments->json)
-      std::cout << text_of(json) << '\n';
-    else
-      print(json);
-  });
+  run_with(*command, arguments, measure, print);
 }
 
 }  // namespace meniscus::apps

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 
+#include "bench_options.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/image.h"
@@ -167,37 +168,21 @@ void print(const Json& json) {
 void add_bench_refraction(CLI::App& bench) {
   CLI::App* command = bench.add_subcommand("refraction", "What is seen through a wavy tank over solid bodies");
   const auto arguments = std::make_shared<RefractionArguments>();
-  command->add_option("--particles", arguments->particles, "Particles in the tank (default: 100000)")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}).description(""));
-  command
-      ->add_option_function<std::string>(
-          "--size", [arguments](const std::string& text) { arguments->size = parse_size("--size", text); },
-          "Size of the picture, px (default: 512x512)")
-      ->type_name("WIDTHxHEIGHT");
-  command->add_option("--seed", arguments->seed, "Of the particles' places (default: 1)")->type_name("N");
-  command->add_option("--repeat", arguments->frames, "Pictures that the median is taken of (default: 3)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""));
-  command->add_option("--threads", arguments->threads, "Threads; 0: one a core (default: 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024).description(""));
+  add_particles(*command, arguments->particles, 1, 4'000'000'000, "Particles in the tank (default: 100000)");
+  add_size(*command, "--size", arguments->size, "Size of the picture, px (default: 512x512)");
+  add_seed(*command, arguments->seed);
+  add_repeat(*command, arguments->frames, "Pictures that the median is taken of (default: 3)");
+  add_threads(*command, arguments->threads);
   command->add_option("--bounces", arguments->bounces, "Interfaces in one path at most (default: 8)")
       ->type_name("N")
       ->check(CLI::Range(1, 64).description(""));
-  command->add_flag("--json", arguments->json, "Print one JSON object");
+  add_json(*command, arguments->json);
   command->footer(
       "Times are those of shading alone, in image space with the picture of the scene that it looks into. psnr_db\n"
       "compares image space with rays that know a single interface; hit_position_error_p90_px is the distance in the\n"
       "picture between where the iteration and where a ray meet the scene; misses is the fraction of the refracted\n"
       "rays whose hit the picture does not show.");
-  command->callback([arguments] {
-    const Json json = measure(*arguments);
-    if (arguments->json)
-      std::cout << text_of(json) << '\n';
-    else
-      print(json);
-  });
+  run_with(*command, arguments, measure, print);
 }
 
 }  // namespace meniscus::apps
