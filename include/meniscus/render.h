@@ -5,6 +5,7 @@
 /// render_files() does all of it in one call.
 #pragma once
 
+#include <functional>
 #include <glm/mat4x4.hpp>
 #include <memory>
 
@@ -15,6 +16,7 @@
 #include "meniscus/particles.h"
 #include "meniscus/scene.h"
 #include "meniscus/shading.h"
+#include "meniscus/sim.h"
 #include "meniscus/surface.h"
 
 namespace meniscus {
@@ -31,9 +33,10 @@ Antialias antialias_of(std::string_view name);
 
 /// How the water is found in the particles.
 enum class SurfaceMethod {
-  raycast,  ///< the iso-surface of their density, cast along rays [Xiao2017]
-  surfels,  ///< the iso-surface of their density, sampled by points [Iwasaki2008]
-  spheres,  ///< not at all: one ball a particle, to look at the raw data
+  raycast,       ///< the iso-surface of their density, cast along rays [Xiao2017]
+  surfels,       ///< the iso-surface of their density, sampled by points [Iwasaki2008]
+  height_field,  ///< columns of water under the potential of eq. 5, 6 [Cords2008]
+  spheres,       ///< not at all: one ball a particle, to look at the raw data
 };
 /// @throws Error invalid_argument
 SurfaceMethod surface_method_of(std::string_view name);
@@ -64,9 +67,12 @@ struct FrameSettings {
   OpticsOptions optics;
   bool caustics = true;  ///< of transparent materials; else their soft shadow
   CausticsOptions caustics_options;
-  SurfelOptions surfels;  ///< of SurfaceMethod::surfels; what is 0 is taken from `surface`
-  Bounds water;           ///< where the water is, m: what light and shadow are fitted to; empty: found in each frame
-  bool shadow = true;     ///< the water's soft shadow on the ground
+  SurfelOptions surfels;            ///< of SurfaceMethod::surfels; what is 0 is taken from `surface`
+  HeightFieldOptions height_field;  ///< of SurfaceMethod::height_field; what is 0 is taken from `surface`
+  /// SurfaceMethod::height_field: the water itself instead of particles, at a frame's time (s); may be null.
+  std::function<HeightField(double)> heights;
+  Bounds water;        ///< where the water is, m: what light and shadow are fitted to; empty: found in each frame
+  bool shadow = true;  ///< the water's soft shadow on the ground
   ToneOptions tone;
   Antialias antialias = Antialias::edges;
   bool legend = false;    ///< a colour bar, where `colour` is set
@@ -189,6 +195,14 @@ Survey survey_particles(const Particles& particles, const SurveyOptions& options
 
 // --- Solid bodies of a sequence ----------------------------------------------------------------------------
 
+/// What a body is in a simulation.
+struct ObstacleRole {
+  bool dynamic = false;       ///< moved by water and gravity: it floats or sinks
+  float density = 500;        ///< kg/m^3, of dynamic ones
+  double appears = 0;         ///< s; dropped in then
+  std::vector<PoseKey> path;  ///< scripted; none: it stands where it is placed
+};
+
 /// A solid body as a user names it.
 struct BodyOptions {
   std::string path;   ///< of a mesh; with `{}` or `{:04}` for the frame's number: one file a frame
@@ -196,6 +210,8 @@ struct BodyOptions {
   glm::mat4 world_from_body{1.0f};
   /// One transform a frame, applied before world_from_body; the last one holds on. Empty: the body stands still.
   std::vector<glm::mat4> frames;
+  std::string name;                       ///< by which a simulation's events call it; may be empty
+  std::optional<ObstacleRole> role;       ///< in a simulation; none: the water does not meet it
   std::optional<SolidMaterial> material;  ///< instead of the file's own
 };
 
@@ -262,6 +278,7 @@ struct PictureOptions {
   bool caustics = true;
   CausticsOptions caustics_options;
   SurfelOptions surfels;
+  HeightFieldOptions height_field;
   CameraOptions camera;
   std::optional<CameraPath> path;  ///< goes before `camera`
   ToneOptions tone;
@@ -372,12 +389,33 @@ struct WavesOptions {
   float shortest = 0;           ///< m, shortest wavelength; 0: an eighth of the longer horizontal side
 };
 
+/// Water that is simulated while it is drawn.
+struct SimulatedWater {
+  SimulationOptions simulation;  ///< without obstacles: those are the bodies that have a role
+  std::size_t frames = 100;
+  double frames_per_second = 25;
+  int most_steps = 0;                ///< in a frame; 0: as many as its time needs
+  std::vector<std::string> dragged;  ///< names of the bodies that simulation.drags move
+};
+
+/// Water that is a height field without particles.
+struct MadeHeights {
+  std::vector<WaveTrain> waves;
+  std::string image;                       ///< a PNG file: its brightness is the height; waves run on top of it
+  Bounds region{{0, 0, 0}, {2, 0.5f, 2}};  ///< m; of the still water, or from black to white
+  float step = 0;                          ///< m
+  std::size_t frames = 50;
+  double frames_per_second = 25;
+};
+
 /// A picture or a film described in a JSON file: docs/scene_file.md.
 struct SceneFile {
   std::vector<std::string> frames;  ///< what find_frames() takes, relative to the working directory
   std::optional<std::int64_t> first, last, every;
-  std::optional<WavesOptions> waves;  ///< water that is made up, instead of frames
-  std::optional<float> spacing;       ///< m
+  std::optional<WavesOptions> waves;         ///< water that is made up, instead of frames
+  std::optional<SimulatedWater> simulation;  ///< water that is simulated, instead of frames
+  std::optional<MadeHeights> heights;        ///< water that is a height field, instead of frames
+  std::optional<float> spacing;              ///< m
   std::optional<Axis> up;
   PictureOptions picture;
   std::string output;  ///< empty: not said
@@ -401,6 +439,29 @@ std::string scene_file_schema();
 Particles synthetic_waves(const WavesOptions& options, double time);
 /// The waves as a sequence that is made up frame by frame.
 FrameSequence waves_sequence(const WavesOptions& options);
+
+/// A simulation and its bodies, frame by frame: what is drawn and what is written.
+class SimulatedScene {
+ public:
+  /// @param bodies  those with a role become obstacles
+  /// @throws Error  as Simulation; not_found: an event for a body that there is not; as read_mesh()
+  SimulatedScene(const SimulatedWater& water, std::vector<BodyOptions> bodies);
+  ~SimulatedScene();
+  std::size_t frames() const;
+  /// The water of frame `index`; frames must be asked for in rising order, the same one again is allowed.
+  /// @throws Error invalid_argument: a frame that is over
+  Particles frame(std::size_t index, StageTimes* times = nullptr);
+  /// Where the bodies are in the frame that was asked for last: as BodyOptions::frames, one a body; bodies that have
+  /// not appeared yet have none.
+  std::vector<std::optional<glm::mat4>> transforms() const;
+  /// What the pictures have in common, without running it: bounds are the tank's.
+  Survey survey() const;
+  Simulation& simulation();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 // --- A scene for measurements ------------------------------------------------------------------------------
 

@@ -198,6 +198,7 @@ class Scene {
   const Ground& ground() const;
   const Tank& tank() const;
   const std::vector<PointLight>& lamps() const;
+  const std::vector<PlacedSolid>& solids() const;
   /// Box of meshes and tank, without the ground; empty if there are none.
   Bounds solid_bounds() const;
 

@@ -12,6 +12,7 @@ struct Material {
   std::string name = "water";
   bool transparent = true;  ///< false: an opaque body of `body` colour
   float ior = 1.333f;       ///< index of refraction, > 1
+  vec3 dispersion{0.0f};    ///< added to the index of refraction per channel, where OpticsOptions::dispersion
   vec3 extinction{0.0f};    ///< absorption, 1/m per channel (Beer-Lambert)
   vec3 scattering{0.0f};    ///< turbidity, 1/m per channel: what is scattered shows `body`
   vec3 body{0.8f};          ///< linear colour of the diffuse part
@@ -32,22 +33,69 @@ enum class RefractionMethod {
   thickness,    ///< one interface, then rays into the scene; the far side is guessed from the water's thickness
   image_space,  ///< one interface, then iteration in what is seen of the scene without water [Iwasaki2008] 5.1.2
   ray_traced,   ///< rays through the water: out at its far side, total reflection, into the next sheet or drop
+  virtual_eye,  ///< one interface, then maps of the objects drawn from virtual eyes [Cords2008] 2.1 to 2.3
 };
 /// @throws Error invalid_argument
 RefractionMethod refraction_method_of(std::string_view name);
 
+enum class FresnelFormula { exact, schlick };
+/// @throws Error invalid_argument
+FresnelFormula fresnel_formula_of(std::string_view name);
+
+/// How objects are drawn into maps from virtual eyes. Each switch turns one part of the method off.
+struct VirtualEyeOptions {
+  int map_size = 0;              ///< px, edge of a face of the cube maps; 0: by the picture
+  bool displaced_eye = true;     ///< off: maps are drawn from the eye itself, as games do       [Cords2008] fig. 10 b
+  bool scale_correction = true;  ///< of the refracted part's length along its main axis         [Cords2008] fig. 3
+  bool adaptation = true;        ///< of the surface to the plane around an object               [Cords2008] fig. 6
+  bool trapezium = true;         ///< objects are seen only in a trapezium towards the eye       [Cords2008] fig. 8
+  float trapezium_a = 0;         ///< m; half width at the object; 0: by its size
+  float trapezium_b = 0;         ///< m; half width at the eye's end; 0: by its size
+  bool per_point = false;        ///< each point from its own virtual eye: for wide objects, beyond the paper
+  float adaptation_width = 0;    ///< m beyond an object's outline; 0: by its size
+  float combine_distance = -1;   ///< m; objects nearer to each other share an eye; negative: default
+};
+
 struct OpticsOptions {
   RefractionMethod refraction = RefractionMethod::thickness;
+  FresnelFormula fresnel = FresnelFormula::exact;
+  bool dispersion = false;  ///< each channel by its own index of refraction
+  VirtualEyeOptions eyes{};
   int iterations = 8;   ///< image_space: projections onto the ray at most, 1 .. 256
   float threshold = 0;  ///< image_space: m between a point on the ray and the scene that counts as met; 0: from pixels
   int bounces = 8;      ///< ray_traced: interfaces in one path at most, 1 .. 64; 1 is a single interface
 };
+
+/// Objects in the water that share a virtual eye, with the plane that approximates the water around them.
+struct WaterObject {
+  std::vector<std::size_t> solids;      ///< indices in Scene::solids()
+  Bounds bounds;                        ///< of all of them, m
+  vec3 plane_point{0.0f};               ///< from the mean of the heights around it, m
+  vec3 plane_normal{0, 1, 0};           ///< unit, from the mean of the normals
+  vec3 axis_top{0.0f}, axis_end{0.0f};  ///< ends of the main axis, m; axis_end is the one under water
+  std::vector<vec2> outline;            ///< convex, horizontal, m, as in PlaneAdaptation
+  bool pierces = false;                 ///< stands through the surface
+  bool under = false;                   ///< some of it is under the surface
+};
+/// Solids of the scene that are seen in or through the water, close ones combined.    [Cords2008] 2.2, 2.3
+std::vector<WaterObject> water_objects(const HeightField& field, const Scene& scene, const VirtualEyeOptions& options);
+/// How the field is to be bent around them; none with options.adaptation off.
+std::vector<PlaneAdaptation> adaptations(std::span<const WaterObject> objects, const VirtualEyeOptions& options);
+
+/// Maps of the objects and of what stands still, drawn from virtual eyes for one view.   [Cords2008] 2.1
+class VirtualEyes;
+/// @param field  after adaptation
+/// @throws Error invalid_argument: an option outside its range; unsupported: a view that is not perspective
+std::shared_ptr<const VirtualEyes> make_virtual_eyes(const View& view, const HeightField& field, const Scene& scene,
+                                                     std::span<const WaterObject> objects, const Material& material,
+                                                     const VirtualEyeOptions& options, StageTimes* times = nullptr);
 
 /// What shade() may look up besides the scene itself.
 struct OpticsInputs {
   OpticsOptions options;
   const SceneBuffers* behind = nullptr;  ///< image_space: Scene::see() of the same whole view
   const Surface* surface = nullptr;      ///< ray_traced: the water itself; one that can be marched
+  const VirtualEyes* eyes = nullptr;     ///< virtual_eye: made for the same view
 };
 
 /// Radiance, linear, of every picture point: water over scene. Where coverage is fractional both are mixed.
@@ -76,7 +124,20 @@ enum class ScreenDirection {
   up,     ///< horizontal, as published
 };
 
+enum class CausticsMethod {
+  triangles,  ///< light followed through triangles of the surface [Iwasaki2008] 5.1
+  simple,     ///< brightness made up from heights and gradients [Cords2008] eq. 4
+  light_map,  ///< a plane map traced backwards through the surface, projected from the light [Cords2008] 2.4
+  combined,   ///< simple and light_map superposed [Cords2008] fig. 9 c
+};
+/// @throws Error invalid_argument
+CausticsMethod caustics_method_of(std::string_view name);
+
 struct CausticsOptions {
+  CausticsMethod method = CausticsMethod::triangles;
+  /// simple: I = a (z - z_min) / (z_max - z_min) + b |n_x + n_y| + c                      [Cords2008] eq. 4
+  float simple_a = 0.6f, simple_b = 1.5f, simple_c = 0.5f;
+  bool on_walls = true;   ///< simple, light_map and combined: light mirrored by the water onto the walls above it
   int screen_width = 0;   ///< px of the virtual screen; 0: by the water's extent, 512 along the longer side
   int screen_height = 0;  ///< px; 0: square pixels
   ScreenDirection screen = ScreenDirection::light;

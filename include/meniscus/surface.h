@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "meniscus/base.h"
@@ -26,6 +27,8 @@ struct Crossing {
   float distance = std::numeric_limits<float>::infinity();  ///< m along the ray; infinity: nowhere
   vec3 normal{0.0f};                                        ///< unit, out of the water; zero: nowhere
 };
+
+struct HeightField;
 
 /// A water surface.
 class Surface {
@@ -67,6 +70,9 @@ class Surface {
 
   /// A box that holds all of the surface; empty when there is no water.
   virtual Bounds bounds() const = 0;
+
+  /// The columns that the surface is made of, if it is a height field; else null.
+  virtual const HeightField* height_field() const { return nullptr; }
 };
 
 // --- Ray-cast surfaces [Xiao2017] --------------------------------------------------------------------------
@@ -191,6 +197,112 @@ std::unique_ptr<Surface> make_surfel_surface(const Particles& particles, const S
                                              std::span<const vec3> colours = {}, StageTimes* times = nullptr);
 /// The same from surfels that are there already; it has no thickness and cannot be marched.
 std::unique_ptr<Surface> make_surfel_surface(std::vector<Surfel> surfels, float epsilon);
+
+// --- Height fields [Cords2008] -------------------------------------------------------------------------------
+
+/// Water as columns over a floor: heights at the points of a regular horizontal grid, between them bilinear.
+///
+/// Point (i, j) lies at low + step * (i a + j b) of the plane, a and b being the horizontal axes in the order x, y, z
+/// (x and z where y is up). Points of the border lie on the border: the field ends at its outermost points.
+struct HeightField {
+  Axis up = Axis::y;
+  vec2 low{0.0f};   ///< m along a and b, of point (0, 0)
+  vec2 step{0.0f};  ///< m between points along a and b, > 0
+  float floor = 0;  ///< m along up; water stands on it
+  /// m along up, width points along a, height points along b; -infinity where there is no water.
+  Image<float> height;
+  Image<vec3> normal;  ///< unit, out of the water, world space; up where there is no water
+  Image<vec3> colour;  ///< linear; empty unless the particles carry colours
+  float spacing = 0;   ///< m, of the particles it is made of; 0: none
+
+  bool empty() const { return height.empty(); }
+  /// Box of the water, m.
+  Bounds bounds() const;
+  /// A point of the grid in the world at height `level`.
+  vec3 point(float i, float j, float level) const;
+  /// Coordinates of a world point in grid steps: (i, j).
+  vec2 grid_point(vec3 point) const;
+  /// Height and normal between the points of the grid; a hole where all four points around are holes or the place lies
+  /// beyond the border by more than 1e-3 steps.
+  struct Sample {
+    float height = -std::numeric_limits<float>::infinity();
+    vec3 normal{0.0f};
+    bool water() const { return height > -std::numeric_limits<float>::infinity(); }
+  };
+  Sample at(float i, float j) const;
+};
+
+/// How a height field is found in particles. Lengths of 0 mean the default.
+struct HeightFieldOptions {
+  float spacing = 0;     ///< m; required, > 0
+  float iso_radius = 0;  ///< m; h of eq. 5, reach of a particle's potential
+  float iso = 0;         ///< of the potential at the surface; default so that still water keeps its level
+  float step = 0;        ///< m between columns; default half a spacing
+  float smoothing = -1;  ///< m, standard deviation of a Gaussian over the heights; negative: default; 0: none
+  Axis up = Axis::y;
+  Bounds region;  ///< m; where there can be water: the tank's inside; empty: the particles' own bounds
+  /// Columns that a solid fills at the water's level: the field goes on through it, so that there is no gap around it.
+  /// Called with points of the raw surface; null: there are no solids.
+  std::function<bool(vec3)> in_solid;
+  bool want_normals = true;
+};
+
+/// Heights where the potential of eq. 5 falls below the iso-value, column by column from above, without a grid in
+/// space.                                                                               [Cords2008] eq. 5, 6
+/// @param colours  one linear colour a particle, or empty
+/// @throws Error invalid_argument, limit_exceeded: more columns than the region can justify
+HeightField height_field(const Particles& particles, const HeightFieldOptions& options,
+                         std::span<const vec3> colours = {}, StageTimes* times = nullptr);
+
+/// What is seen of any surface from straight above.
+/// @param region  m; of the columns; floor: its lower end along up
+/// @throws Error invalid_argument
+HeightField height_field_of(const Surface& surface, Axis up, const Bounds& region, float step);
+
+/// One train of waves.
+struct WaveTrain {
+  enum class Kind { sine, gerstner } kind = Kind::sine;
+  float amplitude = 0.02f;  ///< m, >= 0
+  float wavelength = 0.5f;  ///< m, > 0
+  float direction_deg = 0;  ///< the way it runs, from a towards b
+  float phase_deg = 0;      ///< at time 0
+  float speed = 0;          ///< m/s; 0: of gravity waves over the depth, omega^2 = g k tanh(k depth)
+  float steepness = 0.8f;   ///< gerstner: 0 a sine, 1 the sharpest crests that do not fold
+};
+
+/// Superposed waves on still water.
+struct WaveFieldOptions {
+  std::vector<WaveTrain> waves;
+  Axis up = Axis::y;
+  Bounds region{{0, 0, 0}, {2, 0.5f, 2}};  ///< m, of the still water: its upper end is the level
+  float step = 0;                          ///< m; 0: an eighth of the shortest wave, at least 256th of the longer side
+};
+/// @throws Error invalid_argument: a wave outside its range; limit_exceeded
+HeightField height_field(const WaveFieldOptions& options, double time);
+
+/// Heights from a picture: 0 is the region's lower end along up, 1 its upper. The first row is the far end of b.
+/// @throws Error invalid_argument
+HeightField height_field(const Image<float>& picture, Axis up, const Bounds& region, float smoothing = 0);
+
+/// Normals anew from the heights, where these have been changed.
+void find_normals(HeightField& field);
+
+/// A part of a field that is bent towards a plane.                                      [Cords2008] 2.2
+struct PlaneAdaptation {
+  vec3 point{0.0f};      ///< of the plane, m
+  vec3 normal{0, 1, 0};  ///< of the plane, unit
+  /// Horizontal outline, a convex polygon in grid-free coordinates along a and b, m: inside it the surface is the
+  /// plane.
+  std::vector<vec2> outline;
+  float width = 0;  ///< m beyond the outline over which the field returns linearly to itself, > 0
+};
+/// Heights and normals of the field, bent. Where several reach, they are weighted.
+void adapt(HeightField& field, std::span<const PlaneAdaptation> planes);
+
+/// The water between floor and heights as a surface; it can be marched.
+/// @param sides  whether the water's vertical sides at the border of the field and of holes are surface too: false only
+///               where solid walls stand there that are never seen through
+std::unique_ptr<Surface> make_height_field_surface(HeightField field, bool sides = true);
 
 // --- Particles as they are ---------------------------------------------------------------------------------
 

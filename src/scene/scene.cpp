@@ -34,6 +34,7 @@ void Scene::set_water_light(std::shared_ptr<const WaterLight> light) {
 
 void Scene::set_solids(std::vector<PlacedSolid> solids) {
   auto changed = std::make_shared<Parts>(*parts_);
+  changed->placed = solids;
   changed->solids = solids.empty() ? nullptr : std::make_shared<const PlacedSolids>(std::move(solids));
   changed->grain = changed->solids ? 1e-5f * largest(changed->solids->bounds().extent()) : 0.0f;
   parts_ = std::move(changed);
@@ -61,6 +62,7 @@ const Environment& Scene::environment() const { return parts_->environment; }
 const Ground& Scene::ground() const { return parts_->ground; }
 const Tank& Scene::tank() const { return parts_->tank; }
 const std::vector<PointLight>& Scene::lamps() const { return parts_->lamps; }
+const std::vector<PlacedSolid>& Scene::solids() const { return parts_->placed; }
 
 Bounds Scene::solid_bounds() const {
   Bounds box;

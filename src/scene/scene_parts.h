@@ -15,6 +15,7 @@ struct Scene::Parts {
   Tank tank{};
   std::vector<PointLight> lamps{};
   std::shared_ptr<const WaterLight> water_light{};
+  std::vector<PlacedSolid> placed{};             ///< as given
   std::shared_ptr<const PlacedSolids> solids{};  ///< null: none
   std::shared_ptr<const TankBody> body{};        ///< of the tank; null: none
   vec3 u_axis{0}, v_axis{0};                     ///< along the ground's squares
