@@ -27,6 +27,7 @@ class PictureArguments {
   void add_colour(CLI::App& command);
   void add_picture(CLI::App& command);
   void add_optics(CLI::App& command);
+  void add_eyes(CLI::App& command);
   void add_light(CLI::App& command);
   void add_solids(CLI::App& command);
   void add_camera(CLI::App& command);

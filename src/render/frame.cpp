@@ -7,45 +7,33 @@
 #include "particles/chosen.h"
 #include "render/antialias.h"
 #include "render/show.h"
+#include "render/water_surface.h"
 
 namespace meniscus {
 namespace {
 
-/// The solids, and what the water does to the light on them.
-Scene lit_scene(const Surface& surface, const FrameSettings& settings, StageTimes* times) {
+/// The solids without the water.
+Scene dry_scene(const FrameSettings& settings, StageTimes* times) {
   Scene scene(settings.environment, settings.ground);
-  const bool has_solids = !settings.solids.empty() || settings.tank.style != TankStyle::none;
-  if (has_solids) {
+  if (!settings.solids.empty() || settings.tank.style != TankStyle::none) {
     const StageTimer timer(times, "scene");
     scene.set_tank(settings.tank);
     scene.set_solids(settings.solids);
   }
   scene.set_lamps(settings.lamps);
-  if ((!settings.ground.visible && !has_solids) || surface.bounds().empty()) return scene;
+  return scene;
+}
+
+/// What the water does to the light on the solids.
+void light(Scene& scene, const Surface& surface, const FrameSettings& settings, StageTimes* times) {
+  const bool has_solids = !scene.solid_bounds().empty();
+  if ((!settings.ground.visible && !has_solids) || surface.bounds().empty()) return;
   if (settings.caustics && settings.shadow && settings.material.transparent && !settings.colour)
     scene.set_water_light(
         caustics(surface, scene, settings.material, settings.caustics_options, times, settings.water));
   else if (settings.shadow)
     scene.set_water_light(soft_shadow(surface, settings.environment, settings.ground, settings.material, times,
                                       settings.water, has_solids));
-  return scene;
-}
-
-SurfelOptions surfel_options(const FrameSettings& settings, const RaycastOptions& raycast) {
-  SurfelOptions surfels = settings.surfels;
-  surfels.spacing = raycast.spacing;
-  surfels.smoothing_length = raycast.smoothing_length;
-  surfels.iso = raycast.iso;
-  surfels.keep_thin = raycast.keep_thin;
-  return surfels;
-}
-
-/// The water as the settings want it.
-std::unique_ptr<Surface> surface_of(const Particles& particles, const FrameSettings& settings,
-                                    const RaycastOptions& raycast, std::span<const vec3> colours, StageTimes* times) {
-  if (settings.method == SurfaceMethod::spheres) return make_sphere_surface(particles, 0.5f * raycast.spacing, colours);
-  if (settings.method == SurfaceMethod::raycast) return make_raycast_surface(particles, raycast, colours, times);
-  return make_surfel_surface(particles, surfel_options(settings, raycast), colours, times);
 }
 
 /// The particles without those too far away to be sorted together with the rest; nothing if there are none.
@@ -121,14 +109,26 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
   }
 
   // The surface, and what of it is seen.
-  const std::unique_ptr<Surface> surface = surface_of(particles, settings, surface_options, colours, times);
+  Scene scene = dry_scene(settings, times);
+  const WaterSurface water = water_surface(particles, settings, surface_options, scene, colours, times);
+  const Surface* surface = water.surface.get();
   frame.buffers = surface->see(view, {}, times);
 
   // Light.
-  const Scene scene = lit_scene(*surface, settings, times);
-  OpticsInputs optics{settings.optics, nullptr, surface.get()};
+  light(scene, *surface, settings, times);
+  OpticsInputs optics{settings.optics, nullptr, surface, nullptr};
   if (!surface->can_march() && optics.options.refraction == RefractionMethod::ray_traced)
     optics.options.refraction = RefractionMethod::thickness;
+  std::shared_ptr<const VirtualEyes> eyes;
+  if (settings.optics.refraction == RefractionMethod::virtual_eye && settings.material.transparent) {
+    if (surface->bounds().empty()) {
+      optics.options.refraction = RefractionMethod::thickness;  // nothing is refracted
+    } else {
+      eyes = make_virtual_eyes(view, water.columns(), scene, water.objects, settings.material, settings.optics.eyes,
+                               times);
+      optics.eyes = eyes.get();
+    }
+  }
   std::optional<SceneBuffers> behind;
   const bool edges_of_solids = settings.antialias == Antialias::edges && !scene.solid_bounds().empty();
   if (settings.optics.refraction == RefractionMethod::image_space || edges_of_solids) {

@@ -121,9 +121,10 @@ vec2 sun_deg(const Survey& survey, const PictureOptions& options) {
 SurfaceMethod surface_method_of(std::string_view name) {
   if (name == "raycast") return SurfaceMethod::raycast;
   if (name == "surfels") return SurfaceMethod::surfels;
+  if (name == "height_field") return SurfaceMethod::height_field;
   if (name == "spheres") return SurfaceMethod::spheres;
   throw Error(ErrorCode::invalid_argument,
-              {"there is no such surface", "raycast, surfels or spheres", std::string(name), {}, {}, {}, {}});
+              {"there is no such surface", "raycast, surfels, height_field or spheres", std::string(name), {}, {}, {}, {}});
 }
 
 GroundStyle ground_style_of(std::string_view name) {
@@ -159,6 +160,8 @@ FrameSettings settings_of(const Survey& survey, const PictureOptions& options) {
   settings.caustics = options.caustics;
   settings.caustics_options = options.caustics_options;
   settings.surfels = options.surfels;
+  settings.height_field = options.height_field;
+  settings.height_field.up = survey.up.axis;
   settings.water = survey.bounds.grown(2 * settings.surface.spacing);
   settings.shadow = options.shadow;
   settings.tone = options.tone;
