@@ -2,5 +2,6 @@
 #pragma once
 
 #include "meniscus/formulas/eigen.h"
+#include "meniscus/formulas/fluids.h"
 #include "meniscus/formulas/kernels.h"
 #include "meniscus/formulas/optics.h"

@@ -17,6 +17,7 @@
 #define FORMULAS_BEGIN          \
   namespace meniscus::formulas { \
   using glm::abs;               \
+  using glm::asin;              \
   using glm::clamp;             \
   using glm::cross;             \
   using glm::dot;               \
