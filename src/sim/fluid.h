@@ -17,10 +17,19 @@ struct Fluid {
   void add(vec3 position, vec3 velocity);
 };
 
+/// The same options with every default in its place: what the solvers go by.
+/// @throws Error invalid_argument: an option outside its range
+FluidOptions with_defaults(FluidOptions options);
+
+/// The longest step that is stable with these options, s: of what is set and of the defaults of what is not.
+/// @throws Error invalid_argument: an option outside its range
+float longest_stable_step(const FluidOptions& options);
+
 /// Moves the water by one step.
 class FluidSolver {
  public:
   virtual ~FluidSolver() = default;
+  /// Longer steps than longest_step() are taken in equal parts.
   /// @param forces    acceleration of each particle besides gravity, m/s^2; empty: none
   /// @param impulses  one for each body of the boundary: what the water does to it in this step is added; summed in a
   ///                  fixed order
