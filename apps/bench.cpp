@@ -10,6 +10,8 @@ void add_bench(CLI::App& program) {
   add_bench_density(*bench);
   add_bench_refraction(*bench);
   add_bench_point_sampled(*bench);
+  add_bench_simulate(*bench);
+  add_bench_tank(*bench);
 }
 
 }  // namespace meniscus::apps

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
 
 #include "bench_options.h"
+#include "bench_timing.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/formulas/kernels.h"
@@ -23,11 +23,6 @@ struct DensityArguments {
   int threads = 0;
   bool json = false;
 };
-
-using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// The plain way in float: every particle adds its kernel to all points of its own box, one thread, unit masses.
 std::vector<float> direct_density(const Particles& particles, const DensityOptions& options, const DensityGrid& grid) {

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <glm/geometric.hpp>
 #include <iostream>
 #include <memory>
 
 #include "bench_options.h"
+#include "bench_timing.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/render.h"
@@ -24,17 +24,6 @@ struct PointSampledArguments {
   int threads = 0;
   bool json = false;
 };
-
-using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The pool's floor and walls, with tiles.
 Scene scene_around(const Bounds& water, float spacing) {

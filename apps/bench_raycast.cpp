@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
 
 #include "bench_options.h"
+#include "bench_timing.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/render.h"
@@ -25,11 +25,6 @@ struct RaycastArguments {
   bool iso_sweep = false;
   bool json = false;
 };
-
-using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 struct Measured {
   double frame_ms = 0;

@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <iostream>
 #include <memory>
 
 #include "bench_options.h"
+#include "bench_timing.h"
+#include "bench_virtual_eye.h"
 #include "commands.h"
 #include "json.h"
 #include "meniscus/image.h"
@@ -27,8 +28,6 @@ struct RefractionArguments {
   int bounces = 8;
   bool json = false;
 };
-
-using Clock = std::chrono::steady_clock;
 
 /// The tank's water on a chequered floor with a ball, a block and a column in it.
 Scene scene_around(const Particles& particles, float spacing) {
@@ -126,10 +125,9 @@ Json measure(const RefractionArguments& arguments) {
         optics.behind = &again;
       }
       picture = shade(view, {}, seen, scene, material, optics);
-      if (i > 0) times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      if (i > 0) times.push_back(ms_since(start));
     }
-    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-    return times[times.size() / 2];
+    return median(std::move(times));
   };
   Image<vec3> thickness, image_space, traced, single;
   Json json;
@@ -148,6 +146,10 @@ Json measure(const RefractionArguments& arguments) {
   json["refracted_rays"] = errors.rays;
   json["hit_position_error_p90_px"] = errors.p90_px;
   json["misses"] = errors.misses;
+  const Json cases = virtual_eye_cases(arguments.size, arguments.bounces, arguments.frames);
+  json["virtual_eye_ms"] = std::max(cases[0]["virtual_eye_ms"].get<double>(), cases[1]["virtual_eye_ms"].get<double>());
+  json["virtual_eye_psnr_db"] = std::min(cases[0]["psnr_db"].get<double>(), cases[1]["psnr_db"].get<double>());
+  json["virtual_eye"] = cases;
   return json;
 }
 
@@ -161,6 +163,13 @@ void print(const Json& json) {
       "{:.1f} % not in the picture\n",
       json["psnr_db"].get<double>(), json["hit_position_error_p90_px"].get<double>(),
       100 * json["misses"].get<double>());
+  for (const Json& c : json["virtual_eye"])
+    std::cout << fmt::format(
+        "  virtual eyes, {} water: {:.1f} ms, ray-traced {:.1f} ms ({:.1f} to 1); {:.1f} dB, ssim {:.3f}; "
+        "per point {:.1f} dB, ssim {:.3f}\n",
+        c["case"].get<std::string>(), c["virtual_eye_ms"].get<double>(), c["ray_traced_ms"].get<double>(),
+        c["ratio"].get<double>(), c["psnr_db"].get<double>(), c["ssim"].get<double>(),
+        c["per_point_psnr_db"].get<double>(), c["per_point_ssim"].get<double>());
 }
 
 }  // namespace
@@ -181,7 +190,9 @@ void add_bench_refraction(CLI::App& bench) {
       "Times are those of shading alone, in image space with the picture of the scene that it looks into. psnr_db\n"
       "compares image space with rays that know a single interface; hit_position_error_p90_px is the distance in the\n"
       "picture between where the iteration and where a ray meet the scene; misses is the fraction of the refracted\n"
-      "rays whose hit the picture does not show.");
+      "rays whose hit the picture does not show. virtual_eye has an object through planar and through curved water,\n"
+      "drawn from virtual eyes and compared with the ray-traced picture; virtual_eye_ms and virtual_eye_psnr_db are\n"
+      "those of the worse of both.");
   run_with(*command, arguments, measure, print);
 }
 

@@ -31,6 +31,8 @@ void add_bench_caustics(CLI::App& bench);
 void add_bench_density(CLI::App& bench);
 void add_bench_refraction(CLI::App& bench);
 void add_bench_point_sampled(CLI::App& bench);
+void add_bench_simulate(CLI::App& bench);
+void add_bench_tank(CLI::App& bench);
 void add_compare(CLI::App& program);
 
 }  // namespace meniscus::apps
