@@ -52,6 +52,7 @@ struct VirtualEyeOptions {
   float trapezium_a = 0;         ///< m; half width at the object; 0: by its size
   float trapezium_b = 0;         ///< m; half width at the eye's end; 0: by its size
   bool per_point = false;        ///< each point from its own virtual eye: for wide objects, beyond the paper
+  bool static_position = true;   ///< off: what stands still is looked up by direction alone, as published
   float adaptation_width = 0;    ///< m beyond an object's outline; 0: by its size
   float combine_distance = -1;   ///< m; objects nearer to each other share an eye; negative: default
 };
@@ -73,6 +74,10 @@ struct WaterObject {
   vec3 plane_point{0.0f};               ///< from the mean of the heights around it, m
   vec3 plane_normal{0, 1, 0};           ///< unit, from the mean of the normals
   vec3 axis_top{0.0f}, axis_end{0.0f};  ///< ends of the main axis, m; axis_end is the one under water
+  /// Oriented bounding box: from box_centre to the middle of three faces, m. The first lies along the main axis, which
+  /// is the one along which the object goes deepest.
+  vec3 box_centre{0.0f};
+  std::array<vec3, 3> half_axes{};
   std::vector<vec2> outline;            ///< convex, horizontal, m, as in PlaneAdaptation
   bool pierces = false;                 ///< stands through the surface
   bool under = false;                   ///< some of it is under the surface
@@ -137,7 +142,11 @@ struct CausticsOptions {
   CausticsMethod method = CausticsMethod::triangles;
   /// simple: I = a (z - z_min) / (z_max - z_min) + b |n_x + n_y| + c                      [Cords2008] eq. 4
   float simple_a = 0.6f, simple_b = 1.5f, simple_c = 0.5f;
-  bool on_walls = true;   ///< simple, light_map and combined: light mirrored by the water onto the walls above it
+  /// simple: I scaled so that the floor gets as much light as under still water; off: I as published.
+  bool simple_keeps_mean = true;
+  /// Light of the sun that the water mirrors onto the walls above it and onto bodies; triangles: where the surface is a
+  /// height field.
+  bool on_walls = true;
   int screen_width = 0;   ///< px of the virtual screen; 0: by the water's extent, 512 along the longer side
   int screen_height = 0;  ///< px; 0: square pixels
   ScreenDirection screen = ScreenDirection::light;
@@ -148,7 +157,7 @@ struct CausticsOptions {
   /// the water is followed through the air, where the surface can be marched.
   bool single_interface = false;
   /// Texels along the longer side of the map that the triangles are drawn into; 0: five to four points of the screen,
-  /// 128 .. 1024.
+  /// 128 .. 1024. light_map and combined: of the light map; 0: as many as the field has points, 128 .. 512.
   int map_size = 0;
   int most_lights = 4;  ///< sun and lamps that make caustics, the brightest first
 };

@@ -31,6 +31,9 @@ const Preset kPresets[] = {
     {"plastic", false, 1.5f, {0, 0, 0}, {0, 0, 0}, {0.08f, 0.30f, 0.62f}, 0.22f, 1.0f},
 };
 
+// Of water in air at 20 C at 650, 550 and 450 nm: 1.3313, 1.3343 and 1.3392, less 1.3330 [Harvey1998].
+constexpr vec3 kWaterDispersion{-0.0017f, 0.0013f, 0.0062f};
+
 }  // namespace
 
 std::vector<std::string> material_names() {
@@ -53,6 +56,7 @@ Material material_preset(std::string_view name, float scale) {
     material.body = preset.body;
     material.roughness = preset.roughness;
     material.specular = preset.specular;
+    if (material.name == "water" || material.name == "sea") material.dispersion = kWaterDispersion;
     return material;
   }
   throw Error(ErrorCode::invalid_argument, {"there is no such material",

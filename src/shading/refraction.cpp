@@ -6,6 +6,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "shading/virtual_eye.h"
+
 namespace meniscus {
 namespace {
 
@@ -28,13 +30,21 @@ RefractionMethod refraction_method_of(std::string_view name) {
   if (name == "thickness") return RefractionMethod::thickness;
   if (name == "image_space") return RefractionMethod::image_space;
   if (name == "ray_traced") return RefractionMethod::ray_traced;
+  if (name == "virtual_eye") return RefractionMethod::virtual_eye;
   throw Error(ErrorCode::invalid_argument, {"there is no such way of refraction",
-                                            "thickness, image_space or ray_traced",
+                                            "thickness, image_space, ray_traced or virtual_eye",
                                             std::string(name),
                                             {},
                                             {},
                                             {},
                                             {}});
+}
+
+FresnelFormula fresnel_formula_of(std::string_view name) {
+  if (name == "exact") return FresnelFormula::exact;
+  if (name == "schlick") return FresnelFormula::schlick;
+  throw Error(ErrorCode::invalid_argument,
+              {"there is no such formula of reflection", "exact or schlick", std::string(name), {}, {}, {}, {}});
 }
 
 void require_optics(const View& view, const OpticsInputs& optics) {
@@ -60,6 +70,9 @@ void require_optics(const View& view, const OpticsInputs& optics) {
                    {},
                    {}});
   }
+  require_eyes(options.eyes);
+  if (options.refraction == RefractionMethod::virtual_eye && !optics.eyes)
+    throw Error(ErrorCode::invalid_argument, "refraction by virtual eyes needs the maps of make_virtual_eyes()");
   if (options.refraction == RefractionMethod::ray_traced && (!optics.surface || !optics.surface->can_march()))
     throw Error(ErrorCode::invalid_argument, {"this surface cannot be followed by rays",
                                               {},

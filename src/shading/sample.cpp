@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "meniscus/formulas/optics.h"
+#include "shading/schlick.h"
 
 namespace meniscus {
 namespace {
@@ -101,7 +101,7 @@ Refraction refraction_of(const Sample& sample, const Material& material) {
   Refraction result;
   result.point = sample.ray.origin + sample.depth * sample.ray.direction;
   result.cos_i = -glm::dot(sample.ray.direction, sample.normal);
-  const Interface interface = formulas::fresnel(result.cos_i, material.ior);
+  const Interface interface = interface_of(result.cos_i, material.ior, sample.fresnel);
   result.cos_t = interface.cos_t;
   result.reflectance = std::min(1.0f, interface.reflectance * material.specular);
   result.direction = formulas::refracted(sample.ray.direction, sample.normal, material.ior, interface.cos_t);
@@ -183,7 +183,8 @@ vec3 opaque_radiance(const Sample& sample, const Scene& scene, const Material& m
   const vec3 diffuse = material.body * diffuse_light(scene.environment(), sample.normal, 0.0f);
   if (!(material.specular > 0)) return diffuse;
   const float cos_i = -glm::dot(sample.ray.direction, sample.normal);
-  const float reflectance = std::min(1.0f, formulas::fresnel_reflectance(cos_i, material.ior) * material.specular);
+  const Interface interface = interface_of(cos_i, material.ior, sample.fresnel);
+  const float reflectance = std::min(1.0f, interface.reflectance * material.specular);
   return glm::mix(diffuse, mirror_image(sample, scene, material), reflectance);
 }
 
@@ -202,7 +203,7 @@ vec3 window_radiance(const Sample& sample, const Scene& scene, const Material& m
 
   const vec3 point = sample.ray.origin + sample.depth * direction;
   const float eta = 1.0f / material.ior;
-  const Interface interface = formulas::fresnel(-glm::dot(direction, sample.normal), eta);
+  const Interface interface = interface_of(-glm::dot(direction, sample.normal), eta, sample.fresnel);
   const Beam beam{sample.beam.width + sample.beam.spread * sample.depth,
                   sample.beam.spread + 2.0f * std::sqrt(sample.normal_variance)};
   vec3 seen =

@@ -14,6 +14,7 @@ struct Sample {
   float thickness = 0;  ///< m, >= 0
   Beam beam;            ///< of the ray at its origin
   float normal_variance = 0;
+  FresnelFormula fresnel = FresnelFormula::exact;
 };
 
 /// Water seen from the air: mirror image, sun, and what is seen through it: one interface, the far side guessed from

@@ -8,6 +8,7 @@
 #include "shading/normal_variance.h"
 #include "shading/refraction.h"
 #include "shading/trace.h"
+#include "shading/virtual_eye.h"
 
 namespace meniscus {
 namespace {
@@ -33,6 +34,10 @@ void require_material(const Material& material) {
   const auto valid = [](vec3 v) { return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x + v.y + v.z < kInfinity; };
   if (!(material.ior > 1.0f && material.ior < 100.0f))
     throw Error(ErrorCode::invalid_argument, fmt::format("an index of refraction of {} is not above 1", material.ior));
+  for (int k = 0; k < 3; ++k)
+    if (!(material.ior + material.dispersion[k] > 1.0f && material.ior + material.dispersion[k] < 100.0f))
+      throw Error(ErrorCode::invalid_argument, fmt::format("an index of refraction of {} by dispersion is not above 1",
+                                                           material.ior + material.dispersion[k]));
   if (!valid(material.extinction) || !valid(material.scattering) || !valid(material.body) ||
       !(material.roughness >= 0 && material.roughness <= 1) ||
       !(material.specular >= 0 && material.specular < kInfinity))
@@ -85,6 +90,7 @@ class Shading {
                                                        : Beam{view.pixel_size(1.0f), 0.0f};
     spacing_ = optics.surface ? optics.surface->spacing() : 0.0f;
     glass_ = scene.tank().style == TankStyle::glass;
+    dispersive_ = optics.options.dispersion && material.dispersion != vec3{0.0f};
   }
 
   Image<vec3> run() {
@@ -153,6 +159,7 @@ class Shading {
     sample.thickness = thickness > 0 && thickness < kInfinity ? thickness : 0.0f;
     sample.beam = beam_;
     sample.normal_variance = variance_.at(i);
+    sample.fresnel = optics_.options.fresnel;
     return pixel;
   }
 
@@ -160,8 +167,24 @@ class Shading {
     return water_.colour.empty() ? material_ : tinted(material_, water_.colour[pixel.index]);
   }
 
+  /// Each channel by its own index of refraction, where that is wanted.
   vec3 seen_of(const Wet& pixel, const Material& material) const {
+    if (!dispersive_ || !material.transparent) return seen_at_once(pixel, material);
+    vec3 seen;
+    for (int channel = 0; channel < 3; ++channel)
+      seen[channel] = seen_at_once(pixel, of_channel(material, channel))[channel];
+    return seen;
+  }
+
+  static Material of_channel(Material material, int channel) {
+    material.ior += material.dispersion[channel];
+    return material;
+  }
+
+  vec3 seen_at_once(const Wet& pixel, const Material& material) const {
     if (!material.transparent) return opaque_radiance(pixel.sample, scene_, material);
+    if (optics_.options.refraction == RefractionMethod::virtual_eye)
+      return virtual_eye_radiance(pixel.sample, *optics_.eyes, scene_, material, water_.eye_in_water);
     if (water_.eye_in_water) return window_radiance(pixel.sample, scene_, material);
     if (optics_.options.refraction == RefractionMethod::image_space)
       return image_space_radiance(pixel.sample, point_of(pixel.index), {view_, &optics_.behind->depth},
@@ -181,7 +204,15 @@ class Shading {
       materials.push_back(material_of(pixel));
     }
     const TraceInputs inputs{optics_.surface, &scene_, optics_.options.bounces, water_.eye_in_water};
-    const std::vector<vec3> seen = traced_radiance(samples, materials, inputs);
+    std::vector<vec3> seen;
+    if (!dispersive_) seen = traced_radiance(samples, materials, inputs);
+    for (int channel = 0; dispersive_ && channel < 3; ++channel) {
+      std::vector<Material> channels;
+      for (const Material& material : materials) channels.push_back(of_channel(material, channel));
+      const std::vector<vec3> one = traced_radiance(samples, channels, inputs);
+      seen.resize(one.size());
+      for (std::size_t k = 0; k < one.size(); ++k) seen[k][channel] = one[k][channel];
+    }
     for (std::size_t k = 0; k < wet.size(); ++k) mix_in(wet[k], seen[k]);
   }
 
@@ -208,7 +239,7 @@ class Shading {
   Image<vec3> picture_;
   Beam beam_;
   float spacing_ = 0;
-  bool glass_ = false;
+  bool glass_ = false, dispersive_ = false;
 };
 
 }  // namespace

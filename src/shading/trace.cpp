@@ -5,8 +5,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "meniscus/formulas/optics.h"
 #include "shading/refraction.h"
+#include "shading/schlick.h"
 
 namespace meniscus {
 namespace {
@@ -160,7 +160,7 @@ class Tracer {
       next.weight *= through_medium(vec3{1.0f}, distance, material, vec3{0.0f});
     }
     const float eta = path.inside ? 1.0f / material.ior : material.ior;
-    const Interface interface = formulas::fresnel(-glm::dot(direction, normal), eta);
+    const Interface interface = interface_of(-glm::dot(direction, normal), eta, sample.fresnel);
     const float reflectance = interface.cos_t > 0 ? std::min(1.0f, interface.reflectance * material.specular) : 1.0f;
     const float slopes = std::sqrt(sample.normal_variance);
 

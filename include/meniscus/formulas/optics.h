@@ -45,6 +45,23 @@ FORMULA Interface fresnel(float cos_i, float eta) {
 /// Unpolarised reflectance alone, [0, 1].
 FORMULA float fresnel_reflectance(float cos_i, float eta) { return fresnel(cos_i, eta).reflectance; }
 
+/// Schlick's approximation of the unpolarised reflectance, [0, 1]:                                     [Schlick1994]
+///   R = R_0 + (1 - R_0) (1 - c)^5,   R_0 = ((eta - 1) / (eta + 1))^2
+/// with c the cosine on the side of the lower index, so that it meets total reflection where that begins.
+/// @param cos_i  cosine of the angle of incidence; clamped to [0, 1]
+/// @param eta    > 0
+FORMULA float schlick_reflectance(float cos_i, float eta) {
+  float c = clamp(cos_i, 0.0f, 1.0f);
+  if (eta < 1.0f) {
+    float cos_t_squared = 1.0f - (1.0f - c * c) / (eta * eta);
+    c = cos_t_squared > 0.0f ? sqrt(cos_t_squared) : 0.0f;
+  }
+  float root = (eta - 1.0f) / (eta + 1.0f);
+  float r_0 = root * root;
+  float d = 1.0f - c;
+  return r_0 + (1.0f - r_0) * d * d * d * d * d;
+}
+
 /// Mirror direction of `incident` (towards the interface).
 FORMULA vec3 mirrored(vec3 incident, vec3 normal) { return incident - 2.0f * dot(incident, normal) * normal; }
 
