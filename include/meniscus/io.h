@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <glm/mat4x4.hpp>
 
 #include "meniscus/base.h"
 
@@ -18,12 +19,28 @@ struct FramePath {
   std::optional<std::int64_t> number;  ///< the frame number in its name, if it has one
 };
 
+/// What is known of a sequence that stands in no files before any of its frames is made.
+struct Foreseen {
+  std::size_t particles = 0;  ///< of the first frame
+  Bounds bounds;              ///< of the water in all frames, m
+  float spacing = 0;          ///< m; between columns where there are no particles
+  Axis up = Axis::y;
+  float fastest = 0;                    ///< m/s, about: what a colour map of the velocity may end at
+  std::vector<std::string> attributes;  ///< of the particles
+  std::string reasoning;                ///< one line for the user: where all this is from
+};
+
 /// A sequence of frames in natural order (9 before 10).
 struct FrameSequence {
   std::vector<FramePath> frames;
   std::vector<std::string> notes;  ///< missing numbers, files left out, and why
   /// Where the particles of a frame come from when they are not in a file: made up, or out of a simulation.
   std::function<Particles(const FramePath&)> source;
+  /// Frames that are expensive to make are not looked at beforehand: this is what is known of them.
+  std::optional<Foreseen> foreseen;
+  /// Where the solid bodies are in the frame that `source` gave last, as BodyOptions::frames, one a body; those that
+  /// are not there have none. Null: the bodies move by themselves.
+  std::function<std::vector<std::optional<glm::mat4>>()> body_transforms;
 };
 
 /// The particles of one frame of a sequence.

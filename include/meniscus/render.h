@@ -210,6 +210,7 @@ struct BodyOptions {
   glm::mat4 world_from_body{1.0f};
   /// One transform a frame, applied before world_from_body; the last one holds on. Empty: the body stands still.
   std::vector<glm::mat4> frames;
+  std::vector<bool> absent;               ///< one a frame: it is not there; the last one holds on. Empty: always there
   std::string name;                       ///< by which a simulation's events call it; may be empty
   std::optional<ObstacleRole> role;       ///< in a simulation; none: the water does not meet it
   std::optional<SolidMaterial> material;  ///< instead of the file's own
@@ -226,7 +227,9 @@ class Bodies {
   /// @param number  in the particle file's name; what `{}` stands for
   /// @param notes   what a user should be told: a body whose file of this frame is missing is left out
   /// @throws Error  as read_mesh() and make_solid(), for a body's file of this frame
-  std::vector<PlacedSolid> at(std::size_t index, std::int64_t number, std::vector<std::string>& notes) const;
+  /// @param moved  instead of BodyOptions::frames, one a body: none is left out of the picture. Empty: the bodies' own
+  std::vector<PlacedSolid> at(std::size_t index, std::int64_t number, std::vector<std::string>& notes,
+                              std::span<const std::optional<glm::mat4>> moved = {}) const;
   bool empty() const { return bodies_.empty(); }
   /// Whether the bodies are the same in all frames.
   bool still() const;
@@ -279,6 +282,7 @@ struct PictureOptions {
   CausticsOptions caustics_options;
   SurfelOptions surfels;
   HeightFieldOptions height_field;
+  std::function<HeightField(double)> heights;  ///< as FrameSettings::heights
   CameraOptions camera;
   std::optional<CameraPath> path;  ///< goes before `camera`
   ToneOptions tone;
@@ -403,7 +407,8 @@ struct MadeHeights {
   std::vector<WaveTrain> waves;
   std::string image;                       ///< a PNG file: its brightness is the height; waves run on top of it
   Bounds region{{0, 0, 0}, {2, 0.5f, 2}};  ///< m; of the still water, or from black to white
-  float step = 0;                          ///< m
+  float step = 0;                          ///< m between columns
+  float smoothing = 0;                     ///< m, of the image
   std::size_t frames = 50;
   double frames_per_second = 25;
 };
@@ -440,6 +445,12 @@ Particles synthetic_waves(const WavesOptions& options, double time);
 /// The waves as a sequence that is made up frame by frame.
 FrameSequence waves_sequence(const WavesOptions& options);
 
+/// The heights at a time, s. The image is read once, now.
+/// @throws Error  as height_field() and read_png()
+std::function<HeightField(double)> made_heights(const MadeHeights& heights, Axis up);
+/// Frames without particles, which know their time.
+FrameSequence heights_sequence(const MadeHeights& heights, Axis up);
+
 /// A simulation and its bodies, frame by frame: what is drawn and what is written.
 class SimulatedScene {
  public:
@@ -456,12 +467,16 @@ class SimulatedScene {
   std::vector<std::optional<glm::mat4>> transforms() const;
   /// What the pictures have in common, without running it: bounds are the tank's.
   Survey survey() const;
+  Foreseen foreseen() const;
   Simulation& simulation();
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// The same as a sequence: its frames must be read in rising order; those between are simulated and left out.
+FrameSequence simulated_sequence(const SimulatedWater& water, std::vector<BodyOptions> bodies);
 
 // --- A scene for measurements ------------------------------------------------------------------------------
 

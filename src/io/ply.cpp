@@ -25,6 +25,9 @@ class PlyReader {
 
   Particles read() {
     particles_.format = "ply";
+    particles_.time = header_.time;
+    particles_.spacing = header_.spacing;
+    particles_.up = header_.up;
     for (const PlyElement& element : header_.elements) {
       if (element.name != "vertex") {
         skip(element);

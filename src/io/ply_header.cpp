@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "io/text.h"
@@ -38,7 +39,11 @@ class HeaderReader {
       if (text_.at_end()) source_.malformed("the file ends inside its header", source_.bytes.size(), "end_header");
       start_ = text_.at();
       const std::vector<std::string_view> words = words_of(text_.line());
-      if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+      if (words.empty() || words[0] == "obj_info") continue;
+      if (words[0] == "comment") {
+        if (words.size() == 3) read_comment(words[1], words[2]);
+        continue;
+      }
       if (words[0] == "end_header") break;
       if (words[0] == "format") {
         read_format(words);
@@ -58,6 +63,20 @@ class HeaderReader {
  private:
   [[noreturn]] void fail(std::string problem, std::string_view found) const {
     source_.malformed(std::move(problem), start_, {}, fmt::format("'{}'", found.substr(0, 40)));
+  }
+
+  /// What the particles are, in comments of two words; any other comment is for people.
+  void read_comment(std::string_view name, std::string_view value) {
+    double time = 0;
+    float spacing = 0;
+    if (name == "up") {
+      for (const Axis axis : {Axis::x, Axis::y, Axis::z})
+        if (value == name_of(axis)) header_.up = axis;
+    } else if (name == "time" && parse_number(value, time) && std::isfinite(time)) {
+      header_.time = time;
+    } else if (name == "spacing" && parse_number(value, spacing) && spacing > 0 && std::isfinite(spacing)) {
+      header_.spacing = spacing;
+    }
   }
 
   void read_format(const std::vector<std::string_view>& words) {

@@ -26,6 +26,9 @@ struct PlyElement {
 };
 
 struct PlyHeader {
+  std::optional<double> time;    ///< of a comment "time 0.04", s
+  std::optional<float> spacing;  ///< of a comment "spacing 0.02", m
+  std::optional<Axis> up;        ///< of a comment "up y"
   bool ascii = false;
   std::endian order = std::endian::little;
   std::vector<PlyElement> elements;

@@ -4,16 +4,15 @@
 #include <filesystem>
 
 #include "meniscus/render.h"
+#include "render/body_shapes.h"
 #include "render/numbered_path.h"
 
 namespace meniscus {
 namespace {
 
-Mesh shape_of(const std::string& name) {
-  if (name == "box") return box_mesh(vec3(-0.5f), vec3(0.5f));
-  if (name == "sphere") return sphere_mesh(vec3(0), 0.5f);
-  if (name == "cylinder") return cylinder_mesh({0, -0.5f, 0}, {0, 0.5f, 0}, 0.5f);
-  throw Error(ErrorCode::invalid_argument, {"there is no such shape", "box, sphere or cylinder", name, {}, {}, {}, {}});
+/// After the last frame of its list, a body is there or not as in that.
+bool is_absent(const BodyOptions& body, std::size_t index) {
+  return !body.absent.empty() && body.absent[std::min(index, body.absent.size() - 1)];
 }
 
 }  // namespace
@@ -43,14 +42,19 @@ Bodies::Bodies(std::vector<BodyOptions> bodies) : bodies_(std::move(bodies)) {
     // One mesh that stands in several places is read once.
     for (std::size_t j = 0; j < i && !read.solid; ++j)
       if (bodies_[j].path == body.path && bodies_[j].shape == body.shape) read.solid = read_[j].solid;
-    if (!read.solid) read.solid = make_solid(body.path.empty() ? shape_of(body.shape) : read_mesh(body.path));
+    if (!read.solid) read.solid = make_solid(mesh_of(body));
   }
 }
 
-std::vector<PlacedSolid> Bodies::at(std::size_t index, std::int64_t number, std::vector<std::string>& notes) const {
+std::vector<PlacedSolid> Bodies::at(std::size_t index, std::int64_t number, std::vector<std::string>& notes,
+                                    std::span<const std::optional<glm::mat4>> moved) const {
+  if (!moved.empty() && moved.size() != bodies_.size())
+    throw Error(ErrorCode::invalid_argument,
+                fmt::format("{} bodies are moved by {} transforms", bodies_.size(), moved.size()));
   std::vector<PlacedSolid> placed;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const BodyOptions& body = bodies_[i];
+    if (moved.empty() ? is_absent(body, index) : !moved[i]) continue;
     const NumberedPath pattern(body.path);
     Read& read = read_[i];
     if (pattern.is_numbered()) {
@@ -67,7 +71,10 @@ std::vector<PlacedSolid> Bodies::at(std::size_t index, std::int64_t number, std:
       }
     }
     PlacedSolid solid{read.solid, body.world_from_body, body.material};
-    if (!body.frames.empty()) solid.world_from_solid *= body.frames[std::min(index, body.frames.size() - 1)];
+    if (!moved.empty())
+      solid.world_from_solid *= *moved[i];
+    else if (!body.frames.empty())
+      solid.world_from_solid *= body.frames[std::min(index, body.frames.size() - 1)];
     placed.push_back(std::move(solid));
   }
   return placed;
@@ -76,6 +83,7 @@ std::vector<PlacedSolid> Bodies::at(std::size_t index, std::int64_t number, std:
 bool Bodies::still() const {
   return std::all_of(bodies_.begin(), bodies_.end(), [](const BodyOptions& body) {
     return !NumberedPath(body.path).is_numbered() &&
+           std::find(body.absent.begin(), body.absent.end(), true) == body.absent.end() &&
            std::all_of(body.frames.begin(), body.frames.end(),
                        [&](const glm::mat4& frame) { return frame == body.frames.front(); });
   });

@@ -26,7 +26,9 @@ const Section& file_section() {
         "Light bent by the water",
         [](const JsonValue& v, Draft& d) { d.scene.picture.caustics = !v.is_boolean() || v.boolean(); }},
        {"picture", {an_object(picture_section())}, "{}", "Size, tone, and what is shown", nullptr},
-       {"output", {an_object(output_section())}, "{}", "Where pictures go", nullptr}}};
+       {"output", {an_object(output_section())}, "{}", "Where pictures go", nullptr}},
+      nullptr,
+      finish_file};
   return section;
 }
 

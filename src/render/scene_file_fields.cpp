@@ -52,6 +52,14 @@ void read_value(const JsonValue& value, const Form& form, const Field& field, Dr
         check_numbers(value.at(i), numbers(form.columns, form.range));
       }
       break;
+    case Kind::boxes:
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        const JsonValue box = value.at(i);
+        if (!box.is_list() || box.size() != 2 || !box.at(0).is_list() || !box.at(1).is_list())
+          box.refuse("is no box", "two opposite corners, [[x, y, z], [x, y, z]]", box.dump());
+        for (std::size_t corner = 0; corner < 2; ++corner) check_numbers(box.at(corner), numbers(3));
+      }
+      break;
     case Kind::name:
       if (std::find(form.names.begin(), form.names.end(), value.text()) == form.names.end()) {
         const std::string nearest = nearest_name(value.text(), form.names);
@@ -129,6 +137,7 @@ bool Form::fits(const JsonValue& value) const {
     case Kind::objects:
     case Kind::texts:
     case Kind::rows:
+    case Kind::boxes:
     case Kind::numbers:
       return value.is_list();
   }
@@ -145,7 +154,8 @@ std::string Form::words() const {
     case Kind::number:
       return "a number" + limits;
     case Kind::numbers:
-      return fmt::format("a list of {} {}numbers{}", least, whole ? "whole " : "", limits);
+      return fmt::format("a list of {}{} {}numbers{}", least, least == most ? "" : fmt::format(" to {}", most),
+                         whole ? "whole " : "", limits);
     case Kind::text:
       return "a text";
     case Kind::name:
@@ -160,6 +170,8 @@ std::string Form::words() const {
       return "a list of objects";
     case Kind::texts:
       return "a list of texts";
+    case Kind::boxes:
+      return "a list of boxes, each of two corners of 3 numbers";
     case Kind::rows:
       return fmt::format("a list of {} lists of {} numbers",
                          least == most ? fmt::to_string(least) : fmt::format("{} to {}", least, most), columns);

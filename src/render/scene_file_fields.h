@@ -22,6 +22,14 @@ struct Draft {
   bool keys_in_seconds = false;
   std::vector<glm::mat4>* transforms = nullptr;  ///< where transforms of a list go
   ColourBy colour;
+  std::optional<vec3> gravity;  ///< m/s^2
+  // The way of an obstacle: what a key leaves out is as the body is placed.
+  struct WayKey {
+    double time = 0;
+    std::optional<vec3> position;
+    std::optional<glm::mat4> rotation;
+  };
+  std::vector<WayKey> way;
 
   /// A path of the file as seen from the working directory.
   std::string resolved(const std::string& path) const;
@@ -53,6 +61,7 @@ enum class Kind {
   objects,  ///< a list of them
   texts,    ///< a list of texts
   rows,     ///< a list of `least` to `most` lists of `columns` numbers
+  boxes,    ///< a list of pairs of corners of three numbers
 };
 
 /// One form that a field's value may have.
@@ -90,15 +99,26 @@ struct Section {
 /// The whole file; the other sections hang on it.
 const Section& file_section();
 const Section& water_section();
+const Section& waves_section();
+const Section& simulation_section();
+const Section& pour_section();
+const Section& stir_section();
+const Section& tilt_section();
+const Section& drag_section();
+const Section& heights_section();
+const Section& height_field_section();
 const Section& colour_section();
 const Section& mesh_section();
 const Section& transform_section();
+const Section& rotate_section();
+const Section& obstacle_section();
 const Section& ground_section();
 const Section& tank_section();
 const Section& lights_section();
 const Section& environment_section();
 const Section& camera_section();
 const Section& optics_section();
+const Section& eyes_section();
 const Section& caustics_section();
 const Section& picture_section();
 const Section& output_section();
@@ -106,6 +126,14 @@ const Section& output_section();
 /// Reads an object by a section.
 /// @throws Error malformed_file, not_found
 void read_section(const JsonValue& value, const Section& section, Draft& draft);
+
+/// What concerns several sections: where the water comes from, what a simulation needs, who is dragged.
+void finish_file(const JsonValue& value, Draft& draft);
+
+/// Three Euler angles, degrees about x, then y, then z.
+glm::mat4 turned_by(vec3 degrees);
+/// Two corners of a box with space inside, or a refusal.
+Bounds box_of(const JsonValue& value);
 
 /// Refuses a path that names no file. @throws Error not_found with line and field
 void check_file(const JsonValue& value, const Draft& draft);

@@ -87,10 +87,10 @@ const Section& optics_section() {
       "optics",
       "How rays go on behind the water's surface.",
       {{"refraction",
-        {a_name({"thickness", "image_space", "ray_traced"})},
+        {a_name({"thickness", "image_space", "ray_traced", "virtual_eye"})},
         "\"ray_traced\"",
-        "One interface, the far side guessed; one interface, iteration in the picture of the scene; or rays through "
-        "the water",
+        "One interface, the far side guessed; one interface, iteration in the picture of the scene; rays through the "
+        "water; or one interface, maps of the objects drawn from virtual eyes",
         [](const JsonValue& v, Draft& d) { picture(d).optics.refraction = refraction_method_of(v.text()); }},
        {"bounces",
         {an_integer(1, 64)},
@@ -106,7 +106,18 @@ const Section& optics_section() {
         {a_number(above(0))},
         "(from the pixels)",
         "image_space: distance from the scene that counts as met, m",
-        [](const JsonValue& v, Draft& d) { picture(d).optics.threshold = v.real(); }}}};
+        [](const JsonValue& v, Draft& d) { picture(d).optics.threshold = v.real(); }},
+       {"fresnel",
+        {a_name({"exact", "schlick"})},
+        "\"exact\"",
+        "How much is mirrored: Fresnel's equations, or Schlick's approximation",
+        [](const JsonValue& v, Draft& d) { picture(d).optics.fresnel = fresnel_formula_of(v.text()); }},
+       {"dispersion",
+        {a_boolean()},
+        "false",
+        "Red, green and blue are each bent by their own index of refraction",
+        [](const JsonValue& v, Draft& d) { picture(d).optics.dispersion = v.boolean(); }},
+       {"eyes", {an_object(eyes_section())}, "{}", "virtual_eye: how the maps are drawn", nullptr}}};
   return section;
 }
 
@@ -114,7 +125,27 @@ const Section& caustics_section() {
   static const Section section{
       "caustics",
       "Light that the water bends onto the solids. `true` or an object: with caustics; `false`: a soft shadow instead.",
-      {{"screen",
+      {{"method",
+        {a_name({"triangles", "simple", "light_map", "combined"})},
+        "\"triangles\"",
+        "Light followed through triangles of the surface; brightness made up from heights and gradients; a plane map "
+        "traced backwards through the surface; or the last two superposed",
+        [](const JsonValue& v, Draft& d) { caustics(d).method = caustics_method_of(v.text()); }},
+       {"simple",
+        {numbers(3, between(-1e6, 1e6))},
+        "[0.6, 1.5, 0.5]",
+        "simple, combined: factor of the height, factor of the gradient, and what is added",
+        [](const JsonValue& v, Draft& d) {
+          caustics(d).simple_a = v.at(0).real();
+          caustics(d).simple_b = v.at(1).real();
+          caustics(d).simple_c = v.at(2).real();
+        }},
+       {"on_walls",
+        {a_boolean()},
+        "true",
+        "simple, light_map, combined: light that the water mirrors onto the walls above it",
+        [](const JsonValue& v, Draft& d) { caustics(d).on_walls = v.boolean(); }},
+       {"screen",
         {whole_numbers(2, between(0, 4096))},
         "[0, 0]",
         "Width and height of the virtual screen, px; 0: by the water's extent, 512 along the longer side, and square "

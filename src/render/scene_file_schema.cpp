@@ -77,6 +77,8 @@ ordered_json form_schema(const Form& form) {
       return list_schema(reference_to(*form.section), 0, 0);
     case Kind::texts:
       return list_schema({{"type", "string"}}, 1, 0);
+    case Kind::boxes:
+      return list_schema(list_schema(list_schema({{"type", "number"}}, 3, 3), 2, 2), 0, 0);
     case Kind::rows:
       return list_schema(list_schema(number_schema(form), form.columns, form.columns), form.least, form.most);
   }

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "meniscus/image.h"
+#include "render/body_placement.h"
 #include "render/numbered_path.h"
 #include "render/scene_file_fields.h"
 
@@ -20,31 +22,6 @@ void forget_transform(Draft& draft) {
   draft.rotate.reset();
   draft.scale.reset();
   draft.matrix.reset();
-}
-
-void store_euler(const JsonValue& value, Draft& draft) {
-  const vec3 angles = value.three() * 0.01745329252f;
-  const glm::mat4 one(1.0f);
-  draft.rotate = glm::rotate(one, angles.z, vec3(0, 0, 1)) * glm::rotate(one, angles.y, vec3(0, 1, 0)) *
-                 glm::rotate(one, angles.x, vec3(1, 0, 0));
-}
-
-const Section& rotate_section() {
-  static const Section section{
-      "meshes[].rotate",
-      "A turn about an axis through the origin; or, in short, `[x, y, z]`: degrees about the x, then the y, then the z "
-      "axis.",
-      {{"axis", {numbers(3)}, "[0, 1, 0]", "Of the turn; any length but 0", nullptr},
-       {"degrees", {a_number(between(-36000, 36000))}, "0", "Of the turn, by the right hand", nullptr}},
-      nullptr,
-      [](const JsonValue& value, Draft& draft) {
-        const vec3 axis = value.has("axis") ? value.member("axis").three() : vec3(0, 1, 0);
-        const float degrees = value.has("degrees") ? value.member("degrees").real() : 0.0f;
-        if (!(glm::dot(axis, axis) > 1e-20f && glm::dot(axis, axis) < 1e20f))
-          value.member("axis").refuse("is no direction", "a length above 0", value.member("axis").dump());
-        draft.rotate = glm::rotate(glm::mat4(1.0f), degrees * 0.01745329252f, glm::normalize(axis));
-      }};
-  return section;
 }
 
 void store_scale(const JsonValue& value, Draft& draft) {
@@ -86,7 +63,7 @@ std::vector<Field> transform_fields() {
        "[0, 0, 0]",
        "Turned: degrees about x, then y, then z; or an axis and degrees",
        [](const JsonValue& v, Draft& d) {
-         if (v.is_list()) store_euler(v, d);
+         if (v.is_list()) d.rotate = turned_by(v.three());
        }},
       {"scale", {a_number({1e-9, 1e9}), numbers(3, {1e-9, 1e9})}, "1", "Factor, or one along each axis", store_scale},
       {"matrix",
@@ -94,6 +71,12 @@ std::vector<Field> transform_fields() {
        "(none)",
        "Instead of translate, rotate and scale: rows of the matrix that places the body",
        store_matrix}};
+}
+
+std::vector<Field> frame_fields() {
+  std::vector<Field> fields = transform_fields();
+  fields.push_back({"present", {a_boolean()}, "true", "Whether it is there at all", nullptr});
+  return fields;
 }
 
 /// Transforms from a file of their own: a list of them.
@@ -158,10 +141,42 @@ const Section& material_section() {
   return section;
 }
 
+/// The way of an obstacle, with what its keys leave out as the body is placed.
+void finish_way(Draft& draft) {
+  const Pose placed = placement_of(body(draft).world_from_body).pose;
+  for (const Draft::WayKey& key : draft.way) {
+    Pose pose = placed;
+    if (key.position) pose.position = *key.position;
+    if (key.rotation) pose.rotation = glm::normalize(glm::quat_cast(glm::mat3(*key.rotation)));
+    body(draft).role->path.push_back({key.time, pose});
+  }
+  draft.way.clear();
+}
+
 void finish_mesh(const JsonValue& value, Draft& draft) {
   if (value.has("file") == value.has("shape"))
     value.refuse("needs either a file or a shape", "one of them", value.has("file") ? "both" : "neither");
   body(draft).world_from_body = transform_of(value, draft);
+  std::vector<bool>& absent = body(draft).absent;
+  if (std::find(absent.begin(), absent.end(), true) == absent.end()) absent.clear();
+  if (!body(draft).role) return;
+  if (value.has("frames"))
+    value.refuse_key("frames", "cannot stand beside obstacle", "say the way as obstacle.path, in seconds");
+  if (NumberedPath(body(draft).path).is_numbered())
+    value.member("file").refuse("is another mesh in each frame, which cannot be an obstacle", "one file",
+                                value.member("file").dump());
+  if (body(draft).role->dynamic && value.has("file"))
+    value.refuse_key("file", "cannot float freely", "dynamic obstacles are shapes: a box, a sphere or a cylinder");
+  finish_way(draft);
+}
+
+void store_name(const JsonValue& value, Draft& draft) {
+  const std::string name = value.text();
+  if (name.empty()) value.refuse("is empty", "a name", value.dump());
+  const std::vector<BodyOptions>& bodies = draft.scene.picture.bodies;
+  if (std::any_of(bodies.begin(), bodies.end(), [&](const BodyOptions& other) { return other.name == name; }))
+    value.refuse("is the name of another mesh", "a name of its own", value.dump());
+  body(draft).name = name;
 }
 
 void store_mesh_file(const JsonValue& value, Draft& draft) {
@@ -182,13 +197,49 @@ void store_mesh_frames(const JsonValue& value, Draft& draft) {
 
 }  // namespace
 
+glm::mat4 turned_by(vec3 degrees) {
+  const vec3 angles = degrees * 0.01745329252f;
+  const glm::mat4 one(1.0f);
+  return glm::rotate(one, angles.z, vec3(0, 0, 1)) * glm::rotate(one, angles.y, vec3(0, 1, 0)) *
+         glm::rotate(one, angles.x, vec3(1, 0, 0));
+}
+
+Bounds box_of(const JsonValue& value) {
+  Bounds box;
+  box.add(value.at(0).three());
+  box.add(value.at(1).three());
+  const vec3 extent = box.extent();
+  if (!(std::min({extent.x, extent.y, extent.z}) > 0))
+    value.refuse("has no space inside", "two corners that differ along x, y and z", value.dump());
+  return box;
+}
+
+const Section& rotate_section() {
+  static const Section section{
+      "meshes[].rotate",
+      "A turn about an axis through the origin; or, in short, `[x, y, z]`: degrees about the x, then the y, then the z "
+      "axis.",
+      {{"axis", {numbers(3)}, "[0, 1, 0]", "Of the turn; any length but 0", nullptr},
+       {"degrees", {a_number(between(-36000, 36000))}, "0", "Of the turn, by the right hand", nullptr}},
+      nullptr,
+      [](const JsonValue& value, Draft& draft) {
+        const vec3 axis = value.has("axis") ? value.member("axis").three() : vec3(0, 1, 0);
+        const float degrees = value.has("degrees") ? value.member("degrees").real() : 0.0f;
+        if (!(glm::dot(axis, axis) > 1e-20f && glm::dot(axis, axis) < 1e20f))
+          value.member("axis").refuse("is no direction", "a length above 0", value.member("axis").dump());
+        draft.rotate = glm::rotate(glm::mat4(1.0f), degrees * 0.01745329252f, glm::normalize(axis));
+      }};
+  return section;
+}
+
 const Section& transform_section() {
-  static const Section section{"meshes[].frames[]",
-                               "Where a body is in one frame, before its own translate, rotate and scale.",
-                               transform_fields(), forget_transform, [](const JsonValue& value, Draft& draft) {
-                                 draft.transforms->push_back(transform_of(value, draft));
-                                 forget_transform(draft);
-                               }};
+  static const Section section{
+      "meshes[].frames[]", "Where a body is in one frame, before its own translate, rotate and scale.", frame_fields(),
+      forget_transform, [](const JsonValue& value, Draft& draft) {
+        draft.transforms->push_back(transform_of(value, draft));
+        body(draft).absent.push_back(value.has("present") && !value.member("present").boolean());
+        forget_transform(draft);
+      }};
   return section;
 }
 
@@ -206,6 +257,12 @@ const Section& mesh_section() {
                    "(none)",
                    "Instead of a file: 1 m in size around the origin; the cylinder along y",
                    [](const JsonValue& v, Draft& d) { body(d).shape = v.text(); }},
+                  {"name", {{Kind::text}}, "(none)", "By which a simulation's events call it", store_name},
+                  {"obstacle",
+                   {an_object(obstacle_section())},
+                   "(the water does not meet it)",
+                   "What it is in a simulation",
+                   [](const JsonValue&, Draft& d) { body(d).role.emplace(); }},
                   // Before the body's own placement, which is read into the same place.
                   {"frames",
                    {objects(transform_section()), {Kind::file}},
@@ -258,16 +315,7 @@ const Section& tank_section() {
                                  {{Kind::rows, {}, 2, 2, 3}},
                                  "(around the particles of all frames)",
                                  "Two opposite corners of the space for the water, m",
-                                 [](const JsonValue& v, Draft& d) {
-                                   Bounds inside;
-                                   inside.add(v.at(0).three());
-                                   inside.add(v.at(1).three());
-                                   const vec3 extent = inside.extent();
-                                   if (!(std::min({extent.x, extent.y, extent.z}) > 0))
-                                     v.refuse("has no space inside", "two corners that differ along x, y and z",
-                                              v.dump());
-                                   d.scene.picture.tank_inside = inside;
-                                 }},
+                                 [](const JsonValue& v, Draft& d) { d.scene.picture.tank_inside = box_of(v); }},
                                 {"albedo",
                                  {numbers(3, between(0, 1))},
                                  "[0.55, 0.72, 0.78]",

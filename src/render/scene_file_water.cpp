@@ -1,14 +1,10 @@
 /// The sections on the water itself: what is read, its surface, its look, its colours.
-#include <algorithm>
-
 #include "render/scene_file_fields.h"
-#include "render/synthetic_waves.h"
 
 namespace meniscus::scene_file {
 namespace {
 
 PictureOptions& picture(Draft& d) { return d.scene.picture; }
-WavesOptions& waves(Draft& d) { return *d.scene.waves; }
 
 void store_frames(const JsonValue& value, Draft& draft) {
   draft.scene.frames.clear();
@@ -24,58 +20,8 @@ void store_up(const JsonValue& value, Draft& draft) {
 
 void finish_water(const JsonValue& value, Draft& draft) {
   const SceneFile& scene = draft.scene;
-  if (value.has("frames") && value.has("waves"))
-    value.refuse_key("waves", "cannot stand beside frames", "leave one of them out: the water is read or made up");
   if (scene.first && scene.last && *scene.first > *scene.last)
     value.refuse_key("last", "comes before first", "give the lower number first");
-}
-
-void finish_waves(const JsonValue& value, Draft& draft) {
-  try {
-    check_waves(waves(draft));
-  } catch (const Error& error) {
-    value.refuse("cannot be: " + error.detail().problem, error.detail().expected, error.detail().found);
-  }
-}
-
-const Section& waves_section() {
-  static const Section section{
-      "water.waves",
-      "Water that is made up instead of read: standing waves in a tank, y up, its lower corner at the origin. Their "
-      "frames are numbered from 0.",
-      {{"particles",
-        {an_integer(1, 100e6)},
-        "100000",
-        "Number of particles, about",
-        [](const JsonValue& v, Draft& d) { waves(d).particles = static_cast<std::size_t>(v.integer()); }},
-       {"frames",
-        {an_integer(1, 1e6)},
-        "50",
-        "Number of frames",
-        [](const JsonValue& v, Draft& d) { waves(d).frames = static_cast<std::size_t>(v.integer()); }},
-       {"fps",
-        {a_number({0.1, 1000})},
-        "25",
-        "Frames a second of the water's time",
-        [](const JsonValue& v, Draft& d) { waves(d).frames_per_second = v.number(); }},
-       {"size",
-        {numbers(3, above(0))},
-        "[2, 0.5, 1]",
-        "Of the still water along x, y and z, m",
-        [](const JsonValue& v, Draft& d) { waves(d).size = v.three(); }},
-       {"height",
-        {a_number(at_least(0))},
-        "0.06",
-        "Of the waves over the still level, at most, m",
-        [](const JsonValue& v, Draft& d) { waves(d).height = v.real(); }},
-       {"shortest",
-        {a_number(above(0))},
-        "(an eighth of the longer side)",
-        "Shortest wavelength, m",
-        [](const JsonValue& v, Draft& d) { waves(d).shortest = v.real(); }}},
-      nullptr,
-      finish_waves};
-  return section;
 }
 
 }  // namespace
@@ -114,6 +60,23 @@ const Section& water_section() {
         "(estimated)",
         "Distance between neighbouring particles, m",
         [](const JsonValue& v, Draft& d) { d.scene.spacing = v.real(); }},
+       {"up",
+        {a_name({"x", "y", "z"})},
+        "(guessed; y where water is made up or simulated)",
+        "Axis that points up",
+        store_up},
+       // After spacing and up, which are their defaults.
+       {"simulation",
+        {an_object(simulation_section())},
+        "(none)",
+        "Water that is simulated, instead of frames",
+        [](const JsonValue&, Draft& d) { d.scene.simulation.emplace(); }},
+       {"heights",
+        {an_object(heights_section())},
+        "(none)",
+        "Water that is a made-up height field, instead of frames",
+        [](const JsonValue&, Draft& d) { d.scene.heights.emplace(); }},
+       {"height_field", {an_object(height_field_section())}, "{}", "How the surface `height_field` is found", nullptr},
        {"smoothing_length",
         {a_number(above(0))},
         "(2 spacings)",
@@ -121,11 +84,10 @@ const Section& water_section() {
         [](const JsonValue& v, Draft& d) {
           picture(d).surface.smoothing_length = picture(d).surfels.smoothing_length = v.real();
         }},
-       {"up", {a_name({"x", "y", "z"})}, "(guessed)", "Axis that points up", store_up},
        {"surface",
-        {a_name({"raycast", "surfels", "spheres"})},
+        {a_name({"raycast", "surfels", "height_field", "spheres"})},
         "\"raycast\"",
-        "What represents the water",
+        "What represents the water; made-up heights are a height_field",
         [](const JsonValue& v, Draft& d) { picture(d).method = surface_method_of(v.text()); }},
        {"kernel",
         {a_name({"cubic_spline", "poly6", "wyvill"})},

@@ -71,6 +71,7 @@ class SequenceRun {
     bodies_.emplace(picture_.bodies);
     check_bodies(shots);
     settings_ = settings_of(survey_, picture_);
+    settings_->heights = picture_.heights;
     SequenceReport report;
     for (std::size_t i = 0; i < shots.size(); ++i) {
       report.frames.push_back(one(shots[i], i, shots.size()));
@@ -96,7 +97,7 @@ class SequenceRun {
         for (const PlacedSolid& body : placed) picture_.bodies_bounds.add(bounds_of(body));
         missing = notes;
       }
-      most = std::max(most, placed.size());
+      most = std::max(most, picture_.bodies.size() - notes.size());
       if (bodies_->still()) break;
     }
     if (most < picture_.bodies.size())
@@ -151,7 +152,7 @@ class SequenceRun {
   void draw(const Shot& shot, std::size_t index, std::size_t count, FrameReport& report) {
     std::shared_ptr<const Particles> particles = survey_.only_frame;
     if (!particles) {
-      const StageTimer timer(&report.times, "read");
+      const StageTimer timer(&report.times, sequence_.body_transforms ? "simulate" : "read");
       particles = std::make_shared<Particles>(read_frame(sequence_, shot.frame));
     }
     if (particles->dropped_non_finite > 0)
@@ -163,9 +164,11 @@ class SequenceRun {
       write_surfels(report, *particles);
       return;
     }
-    settings_->solids = bodies_->at(index, shot.number, report.notes);
-    if (options_.strict && settings_->solids.size() < picture_.bodies.size())
-      throw Error(ErrorCode::not_found, report.notes.back());
+    std::vector<std::optional<glm::mat4>> moved;
+    if (sequence_.body_transforms) moved = sequence_.body_transforms();
+    const std::size_t notes = report.notes.size();
+    settings_->solids = bodies_->at(index, shot.number, report.notes, moved);
+    if (options_.strict && report.notes.size() > notes) throw Error(ErrorCode::not_found, report.notes.back());
     FramePicture frame = render_frame(*particles, *settings_);
     report.particles = frame.particles;
     if (frame.far_away > 0)

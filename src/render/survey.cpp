@@ -65,12 +65,33 @@ class Surveyor {
   std::size_t spacing_from_ = 0;  ///< particles of the frame that the spacing is from
 };
 
+/// What is known of frames that are not to be made beforehand.
+Survey survey_of(const Foreseen& foreseen, std::size_t frames, const SurveyOptions& options) {
+  Survey survey;
+  survey.frames = frames;
+  survey.most_particles = foreseen.particles;
+  survey.bounds = foreseen.bounds;
+  survey.spacing = {foreseen.spacing, 3, foreseen.reasoning};
+  if (options.spacing) survey.spacing = {*options.spacing, 3, "given"};
+  survey.up = options.up ? UpEstimate{*options.up, "given"} : UpEstimate{foreseen.up, foreseen.reasoning};
+  survey.attributes = foreseen.attributes;
+  if (!options.colour) return survey;
+  survey.colour_range = options.colour->range;
+  if (!survey.colour_range && options.colour->attribute == "velocity") {
+    survey.colour_range = {0.0f, foreseen.fastest};
+    survey.notes.push_back(
+        fmt::format("the colours of velocity end at {:.3g} m/s: a range may be given", foreseen.fastest));
+  }
+  return survey;
+}
+
 }  // namespace
 
 Survey survey_frames(const FrameSequence& sequence, const SurveyOptions& options,
                      FunctionRef<void(std::size_t, std::size_t)>* on_frame) {
-  Surveyor surveyor(options);
   const std::size_t count = sequence.frames.size();
+  if (sequence.foreseen) return survey_of(*sequence.foreseen, count, options);
+  Surveyor surveyor(options);
   const std::size_t looked_at = std::min(count, static_cast<std::size_t>(std::max(options.most_frames, 1)));
   std::exception_ptr first_error;
   for (std::size_t i = 0; i < looked_at; ++i) {
