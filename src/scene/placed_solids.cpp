@@ -100,6 +100,8 @@ PlacedSolids::PlacedSolids(std::vector<PlacedSolid> placed) : scene_(make_embree
   check_embree();
   const vec3 size = glm::max(glm::abs(bounds_.low), glm::abs(bounds_.high));
   grown_ = bounds_.grown(1e-5f * std::max({size.x, size.y, size.z}));
+  centre_ = grown_.centre();
+  half_diagonal_ = 0.5f * glm::length(grown_.extent());
 }
 
 SolidHit PlacedSolids::hit(const Ray& ray, Beam beam, float from, float limit) const {
@@ -152,7 +154,7 @@ int PlacedSolids::passing(const Ray (&rays)[4]) const {
 
 bool PlacedSolids::near(const Ray& ray, float width, float spread) const {
   // Nothing of the box is farther than its centre and half of its diagonal.
-  const float farthest = glm::length(grown_.centre() - ray.origin) + 0.5f * glm::length(grown_.extent());
+  const float farthest = glm::length(centre_ - ray.origin) + half_diagonal_;
   return meets(grown_.grown(width + spread * farthest), ray, 0, kInfinity);
 }
 

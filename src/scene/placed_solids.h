@@ -37,7 +37,9 @@ class PlacedSolids {
   std::vector<Place> places_;
   EmbreeScene scene_;
   Bounds bounds_;
-  Bounds grown_;  ///< by more than rounding
+  Bounds grown_;             ///< by more than rounding
+  vec3 centre_{0.0f};        ///< of it
+  float half_diagonal_ = 0;  ///< of it, m
 };
 
 }  // namespace meniscus

@@ -33,9 +33,8 @@ float Scene::Parts::ground_distance(const Ray& ray) const {
   return std::max(0.0f, (glm::dot(ray.origin, ground.up) - ground.height) / down);
 }
 
-SolidHit Scene::Parts::ground_hit(const Ray& ray, Beam beam, float from, float limit) const {
+SolidHit Scene::Parts::ground_hit(const Ray& ray, float distance, Beam beam, float from, float limit) const {
   SolidHit hit;
-  const float distance = ground_distance(ray);
   if (!(distance < kInfinity) || distance < from || distance > limit) return hit;
   const vec3 point = ray.origin + distance * ray.direction;
   if (body && body->opens_ground(point)) return hit;
@@ -79,12 +78,11 @@ float Scene::ground_distance(const Ray& ray) const { return parts_->ground_dista
 
 SolidHit Scene::hit(const Ray& ray, Beam beam, float from, float limit) const {
   const Parts& parts = *parts_;
-  SolidHit nearest = parts.ground_hit(ray, beam, from, limit);
-  if (parts.body) {
-    const float nearer = std::min(limit, nearest.distance * (1.0f + kTie));
-    const SolidHit hit = parts.body->hit(ray, beam, from, nearer);
-    if (hit.found()) nearest = hit;
-  }
+  SolidHit nearest;
+  if (parts.body) nearest = parts.body->hit(ray, beam, from, limit);
+  const float ground = parts.ground_distance(ray);
+  if (ground < kInfinity && ground * (1.0f + kTie) < nearest.distance)
+    if (const SolidHit hit = parts.ground_hit(ray, ground, beam, from, limit); hit.found()) nearest = hit;
   if (parts.solids) {
     const SolidHit hit = parts.solids->hit(ray, beam, from, std::min(limit, nearest.distance));
     if (hit.found()) nearest = hit;
@@ -94,8 +92,10 @@ SolidHit Scene::hit(const Ray& ray, Beam beam, float from, float limit) const {
 
 float Scene::distance(const Ray& ray, float from) const {
   const Parts& parts = *parts_;
-  float nearest = parts.ground_hit(ray, {}, from, kInfinity).distance;
-  if (parts.body) nearest = std::min(nearest, parts.body->hit(ray, {}, from, nearest).distance);
+  float nearest = kInfinity;
+  if (parts.body) nearest = parts.body->hit(ray, {}, from, kInfinity).distance;
+  const float ground = parts.ground_distance(ray);
+  if (ground < nearest) nearest = std::min(nearest, parts.ground_hit(ray, ground, {}, from, nearest).distance);
   if (parts.solids) nearest = std::min(nearest, parts.solids->distance(ray, from, nearest));
   return nearest;
 }

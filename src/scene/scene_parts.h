@@ -27,8 +27,8 @@ struct Scene::Parts {
   void aim_at_sun();
   /// Distance to the visible plane, not the haze in front of it.
   float ground_distance(const Ray& ray) const;
-  /// The ground alone.
-  SolidHit ground_hit(const Ray& ray, Beam beam, float from, float limit) const;
+  /// The ground alone. @param distance  ground_distance(ray)
+  SolidHit ground_hit(const Ray& ray, float distance, Beam beam, float from, float limit) const;
   /// How far from a point on a solid, m, rays start that must not meet that solid again: what rounding may have moved
   /// the point by, many times over.
   float clearance(vec3 point) const;

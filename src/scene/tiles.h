@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "meniscus/base.h"
+#include "scene/chequer.h"
 
 namespace meniscus {
 
@@ -16,7 +17,7 @@ inline float pulse_mean(float x, float width, float duty) {
   if (w > 64.0f || !(std::abs(x) < 1e6f)) return duty;
   const float mean = 0.5f * duty * (1.0f - duty);
   const auto second_integral = [&](float at) {
-    const float phase = at - std::floor(at);
+    const float phase = 0.5f * modulo_two(2.0f * at);
     if (phase < duty) return (0.5f * (1.0f - duty) * phase - mean) * phase;
     // The same from the period's other end.
     const float rest = 1.0f - phase;
