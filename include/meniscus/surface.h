@@ -239,6 +239,7 @@ struct HeightFieldOptions {
   float iso = 0;         ///< of the potential at the surface; default so that still water keeps its level
   float step = 0;        ///< m between columns; default half a spacing
   float smoothing = -1;  ///< m, standard deviation of a Gaussian over the heights; negative: default; 0: none
+  float drop = 0;        ///< m; water thinner than this with air under it is left out; default 4 spacings
   Axis up = Axis::y;
   Bounds region;  ///< m; where there can be water: the tank's inside; empty: the particles' own bounds
   /// Columns that a solid fills at the water's level: the field goes on through it, so that there is no gap around it.

@@ -1,0 +1,148 @@
+// The water under a height field as a surface: what is seen of it is found by rays.
+#include <fmt/format.h>
+#include <cmath>
+
+#include "surface/height_field_rays.h"
+
+namespace meniscus {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// @throws Error invalid_argument
+HeightField checked(HeightField field) {
+  const auto fail = [](std::string problem, std::string expected, std::string found) {
+    throw Error(ErrorCode::invalid_argument,
+                ErrorDetail{std::move(problem), std::move(expected), std::move(found), {}, {}, {}, {}});
+  };
+  if (field.empty()) return field;
+  const int width = field.height.width(), height = field.height.height();
+  if (width < 2 || height < 2)
+    fail("a height field is too narrow", "2 x 2 points or more", fmt::format("{} x {} points", width, height));
+  if (!(field.step.x > 0 && field.step.y > 0) || !std::isfinite(field.step.x + field.step.y) ||
+      !std::isfinite(field.low.x + field.low.y) || !std::isfinite(field.floor))
+    fail("a height field has no place", "steps > 0 and finite bounds",
+         fmt::format("steps {} and {} m", field.step.x, field.step.y));
+  for (const float level : field.height)
+    if (!(level < kInfinity))
+      fail("a height field has a height that is none", "finite heights", fmt::format("{}", level));
+  if (!field.colour.empty() && field.colour.size() != field.height.size())
+    fail("a height field has colours of another size", fmt::format("{} x {}", width, height),
+         fmt::format("{} x {}", field.colour.width(), field.colour.height()));
+  if (field.normal.width() != width || field.normal.height() != height) find_normals(field);
+  return field;
+}
+
+class HeightFieldSurface final : public Surface {
+ public:
+  HeightFieldSurface(HeightField field, bool sides) : rays_(checked(std::move(field)), sides) {}
+
+  SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
+    StageTimer timer(times, "march");
+    SurfaceBuffers seen = blank(view, points);
+    seen.eye_in_water = view.projection != Projection::orthographic &&
+                        rays_.body().inside(rays_.body().field_ray({view.eye, view.forward}), 0);
+    for_each_ray(view, points, [&](std::size_t i, const Ray& ray) { look(view, ray, i, seen); });
+    return seen;
+  }
+
+  Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
+    StageTimer timer(times, "thickness");
+    Image<float> values = image_of(view, points, 0.0f);
+    for_each_ray(view, points, [&](std::size_t i, const Ray& ray) {
+      const FieldRay in_field = rays_.body().field_ray(ray);
+      const FieldStretch stretch = rays_.body().clipped(in_field, 0, static_cast<double>(kInfinity));
+      if (stretch.found()) values[i] = static_cast<float>(rays_.body().length(in_field, stretch.begin, stretch.end));
+    });
+    return values;
+  }
+
+  float spacing() const override { return rays_.field().spacing; }
+
+  bool can_march() const override { return true; }
+
+  void crossings(std::span<const Ray> rays, std::span<const float> from, std::span<const float> limit,
+                 std::span<const std::uint8_t> inside, std::span<Crossing> found) const override {
+    if (from.size() != rays.size() || limit.size() != rays.size() || inside.size() != rays.size() ||
+        found.size() != rays.size())
+      throw Error(ErrorCode::invalid_argument, "the lists of rays to follow have different lengths");
+    parallel_for(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const float start = std::max(from[i], 0.0f);
+        found[i] = inside[i] ? rays_.out_of(rays[i], start, limit[i]) : rays_.into(rays[i], start, limit[i]);
+      }
+    });
+  }
+
+  Bounds bounds() const override { return rays_.field().bounds(); }
+
+  const HeightField* height_field() const override { return &rays_.field(); }
+
+ private:
+  template <class T>
+  static Image<T> image_of(const View& view, std::span<const vec2> points, T fill) {
+    if (points.empty()) return Image<T>(view.width, view.height, fill);
+    return Image<T>(static_cast<int>(points.size()), 1, fill);
+  }
+
+  SurfaceBuffers blank(const View& view, std::span<const vec2> points) const {
+    SurfaceBuffers seen;
+    seen.depth = image_of(view, points, kInfinity);
+    seen.normal = image_of(view, points, vec3{0.0f});
+    seen.thickness = image_of(view, points, 0.0f);
+    seen.coverage = image_of(view, points, 0.0f);
+    seen.entry = image_of(view, points, kInfinity);
+    seen.exit = image_of(view, points, -kInfinity);
+    if (!rays_.field().colour.empty()) seen.colour = image_of(view, points, vec3{0.0f});
+    return seen;
+  }
+
+  /// Calls visit(index, ray) for all pixels or points.
+  template <class Visit>
+  static void for_each_ray(const View& view, std::span<const vec2> points, Visit visit) {
+    if (!points.empty()) {
+      parallel_for(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) visit(i, view.ray(points[i]));
+      });
+      return;
+    }
+    const auto width = static_cast<std::size_t>(view.width);
+    parallel_for(static_cast<std::size_t>(view.height), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end; ++y)
+        for (std::size_t x = 0; x < width; ++x)
+          visit(y * width + x, view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
+    });
+  }
+
+  void look(const View& view, const Ray& ray, std::size_t i, SurfaceBuffers& seen) const {
+    const FieldRay in_field = rays_.body().field_ray(ray);
+    const FieldStretch stretch = rays_.body().clipped(in_field, 0, static_cast<double>(kInfinity));
+    if (!stretch.found()) return;
+    seen.entry[i] = static_cast<float>(stretch.begin);
+    seen.exit[i] = static_cast<float>(stretch.end);
+    FieldChange change;
+    if (seen.eye_in_water)
+      change = rays_.leave(in_field, 0, static_cast<double>(kInfinity));
+    else if (view.projection == Projection::orthographic && rays_.body().inside(in_field, 0))
+      change = {0, Face::start};  // the face that the view's plane cuts
+    else
+      change = rays_.enter(in_field, stretch.begin, stretch.end);
+    const double from = seen.eye_in_water || !change.found() ? stretch.begin : change.t;
+    seen.thickness[i] = static_cast<float>(rays_.body().length(in_field, from, stretch.end));
+    if (!change.found()) return;
+    seen.depth[i] = static_cast<float>(std::max(change.t, 0.0));
+    seen.normal[i] = rays_.normal(ray, in_field, change, !seen.eye_in_water);
+    seen.coverage[i] = 1.0f;
+    if (!seen.colour.empty()) seen.colour[i] = rays_.colour(in_field, change.t);
+  }
+
+  HeightFieldRays rays_;
+};
+
+}  // namespace
+
+std::unique_ptr<Surface> make_height_field_surface(HeightField field, bool sides) {
+  return std::make_unique<HeightFieldSurface>(std::move(field), sides);
+}
+
+}  // namespace meniscus
