@@ -1,11 +1,84 @@
-#include "meniscus/sim.h"
+#include <fmt/format.h>
+
+#include "sim/pbf.h"
+#include "sim/sph.h"
 
 namespace meniscus {
+namespace {
+
+void require(bool fine, const char* option, const char* expected, double found) {
+  if (!fine)
+    throw Error(
+        ErrorCode::invalid_argument,
+        {fmt::format("the fluid's {} is out of range", option), expected, fmt::format("{:g}", found), {}, {}, {}, {}});
+}
+
+void check(const FluidOptions& options) {
+  const auto positive = [](float v) { return v > 0.0f && std::isfinite(v); };
+  require(positive(options.spacing) && options.spacing >= 1e-5f && options.spacing <= 1e5f, "spacing",
+          "0.00001 .. 100,000 m", options.spacing);
+  const float support_rel = options.smoothing_length / options.spacing;
+  require(options.smoothing_length == 0.0f || (support_rel >= 1.5f && support_rel <= 4.0f), "smoothing length",
+          "1.5 .. 4 spacings", options.smoothing_length);
+  require(options.step == 0.0f || positive(options.step), "step", "above 0 s", options.step);
+  require(positive(options.rest_density), "rest density", "above 0 kg/m^3", options.rest_density);
+  require(options.stiffness == 0.0f || positive(options.stiffness), "stiffness", "above 0 m^2/s^2", options.stiffness);
+  require(std::isfinite(options.viscosity), "viscosity", "a finite number", options.viscosity);
+  require(options.solver == Solver::sph || options.viscosity <= 1.0f, "viscosity", "0 .. 1 with pbf",
+          options.viscosity);
+  require(std::isfinite(options.surface_tension), "surface tension", "a finite number", options.surface_tension);
+  require(options.iterations >= 1 && options.iterations <= 64, "number of iterations", "1 .. 64", options.iterations);
+  require(std::isfinite(options.vorticity) && options.vorticity <= 100.0f, "vorticity confinement", "at most 100",
+          options.vorticity);
+  require(std::isfinite(length(options.gravity)), "gravity", "finite numbers", length(options.gravity));
+}
+
+}  // namespace
 
 Solver solver_of(std::string_view name) {
   if (name == "sph") return Solver::sph;
   if (name == "pbf") return Solver::pbf;
-  throw Error(ErrorCode::invalid_argument, {"there is no such solver", "sph or pbf", std::string(name), {}, {}, {}, {}});
+  throw Error(ErrorCode::invalid_argument,
+              {"there is no such solver", "sph or pbf", std::string(name), {}, {}, {}, {}});
+}
+
+FluidOptions with_defaults(FluidOptions options) {
+  check(options);
+  if (options.smoothing_length == 0.0f) options.smoothing_length = 2.0f * options.spacing;
+  if (options.solver == Solver::sph)
+    fill_sph_defaults(options);
+  else
+    fill_pbf_defaults(options);
+  constexpr float kMostParts = 100.0f;
+  const float longest = longest_stable_step(options);
+  if (!(options.step <= kMostParts * longest))
+    throw Error(ErrorCode::invalid_argument,
+                {"the fluid's step is too long for its stiffness, viscosity and surface tension",
+                 fmt::format("at most {:.3g} s, {:g} stable steps", kMostParts * longest, kMostParts),
+                 fmt::format("{:g} s", options.step),
+                 {},
+                 {},
+                 {},
+                 "leave the step at 0, or set a smaller one"});
+  return options;
+}
+
+float longest_stable_step(const FluidOptions& options) {
+  check(options);
+  FluidOptions filled = options;
+  if (filled.smoothing_length == 0.0f) filled.smoothing_length = 2.0f * filled.spacing;
+  if (filled.solver == Solver::pbf) return longest_pbf_step(filled);
+  fill_sph_defaults(filled);
+  return longest_sph_step(filled);
+}
+
+void Fluid::add(vec3 position, vec3 velocity) {
+  x.push_back(position.x);
+  y.push_back(position.y);
+  z.push_back(position.z);
+  vx.push_back(velocity.x);
+  vy.push_back(velocity.y);
+  vz.push_back(velocity.z);
 }
 
 }  // namespace meniscus

@@ -51,6 +51,13 @@ FORMULA float spiky_over_plane(float distance, float h) {
   return v * v * v * v * (7.5f - 6.0f * v) / h;
 }
 
+/// Part of the spiky kernel beyond the wall, 0 .. 1: 3 / 2 v^5 - v^6 outside. The integral of spiky_over_plane.
+FORMULA float spiky_beyond(float distance, float h) {
+  float v = max(1.0f - abs(distance) / h, 0.0f);
+  float outside = v * v * v * v * v * (1.5f - v);
+  return distance < 0.0f ? 1.0f - outside : outside;
+}
+
 /// Integral of viscosity_laplacian over the solid, 1/m^2: 15 / h^2 (v^3 - v^4 / 2) with v = 1 - |q|, of 15 / h^2 over
 /// the whole support.
 FORMULA float viscosity_laplacian_beyond(float distance, float h) {
