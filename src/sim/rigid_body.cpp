@@ -43,9 +43,17 @@ void push(RigidBody& body, const Impulse& impulse) {
 }
 
 void drift(RigidBody& body, float dt) {
+  if (!body.moved_by_forces()) {
+    body.pose = moved(body.pose, body.motion, dt);
+    return;
+  }
+  // It turns as it would half-way, which keeps the energy to second order.
   const vec3 momentum = angular_momentum(body);
+  RigidBody half = body;
+  half.pose = moved(body.pose, body.motion, dt / 2);
+  body.motion.angular = inverse_inertia(half) * momentum;
   body.pose = moved(body.pose, body.motion, dt);
-  if (body.moved_by_forces()) body.motion.angular = inverse_inertia(body) * momentum;
+  body.motion.angular = inverse_inertia(body) * momentum;
 }
 
 }  // namespace meniscus
