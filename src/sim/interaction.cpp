@@ -38,9 +38,9 @@ Jet::Jet(const Pour& pour, float spacing)
 }
 
 void Jet::emit(Fluid& fluid, double time, double dt, const Obstacles& obstacles, std::size_t most) const {
-  // Layer n leaves at from + n gap / speed.
-  const double begin = std::max((time - pour_.from) * speed_ / gap_, 0.0);
-  const double end = (std::min(time + dt, pour_.until) - pour_.from) * speed_ / gap_;
+  // Layer n leaves in the middle of its share of the time, at from + (n + 1/2) gap / speed.
+  const double begin = std::max((time - pour_.from) * speed_ / gap_ - 0.5, 0.0);
+  const double end = (std::min(time + dt, pour_.until) - pour_.from) * speed_ / gap_ - 0.5;
   double layer = std::ceil(begin);
   if (!(layer < end)) return;
   const auto reach = static_cast<float>(speed_ * dt);
@@ -50,7 +50,7 @@ void Jet::emit(Fluid& fluid, double time, double dt, const Obstacles& obstacles,
   Room room(mouth.grown(pour_.radius + 2 * spacing_), kMouthApart_rel * spacing_, fluid);
   const Bounds& tank = obstacles.tank();
   for (; layer < end; layer += 1) {
-    const auto way = static_cast<float>((time + dt - pour_.from) * speed_ - layer * gap_);
+    const auto way = static_cast<float>((time + dt - pour_.from) * speed_ - (layer + 0.5) * gap_);
     for (const vec3 place : layer_) {
       const vec3 point = pour_.at + place + direction_ * way;
       bool inside = true;
