@@ -1,51 +1,27 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "shading/caustics_field.h"
 #include "shading/caustics_map.h"
+#include "shading/caustics_options.h"
 #include "shading/light_map.h"
 
 namespace meniscus {
 namespace {
 
-constexpr int kLargestScreen = 1 << 12;
-
-void require(bool valid, const char* name, double value, const char* expected) {
-  if (!valid)
-    throw Error(ErrorCode::invalid_argument, {fmt::format("caustics cannot be drawn with this {}", name),
-                                              expected,
-                                              fmt::format("{}", value),
-                                              {},
-                                              {},
-                                              {},
-                                              {}});
-}
-
-void require_options(const CausticsOptions& options) {
-  require(options.screen_width >= 0 && options.screen_width <= kLargestScreen, "screen width", options.screen_width,
-          "0 .. 4096 px");
-  require(options.screen_height >= 0 && options.screen_height <= kLargestScreen, "screen height", options.screen_height,
-          "0 .. 4096 px");
-  require(options.screen_width != 1 && options.screen_height != 1, "screen", 1, "at least 2 px a side");
-  require(options.iterations >= 1 && options.iterations <= 256, "number of iterations", options.iterations, "1 .. 256");
-  require(options.threshold >= 0 && std::isfinite(options.threshold), "threshold",
-          static_cast<double>(options.threshold), "a length >= 0 m");
-  require(
-      options.map_size >= 0 && options.map_size <= kLargestScreen && (options.map_size == 0 || options.map_size > 15),
-      "map size", options.map_size, "0, or 16 .. 4096 texels");
-  require(options.most_lights >= 0, "number of lights", options.most_lights, ">= 0");
-}
-
 /// All lights together.
 class Caustics : public WaterLight {
  public:
-  Caustics(std::vector<LightCast> casts, std::vector<PointLight> lamps, std::shared_ptr<const WaterLight> sky)
-      : casts_(std::move(casts)), lamps_(std::move(lamps)), sky_(std::move(sky)) {}
+  Caustics(std::vector<LightCast> casts, FieldLight field, std::vector<PointLight> lamps,
+           std::shared_ptr<const WaterLight> sky)
+      : casts_(std::move(casts)), field_(std::move(field)), lamps_(std::move(lamps)), sky_(std::move(sky)) {}
 
   Light at(vec3 point, vec3 normal) const override {
     Light light;
+    if (field_.plane) light = field_.plane->at(point, normal);
+    if (field_.walls) light.refracted += field_.walls->irradiance(point, normal);
     if (sky_) light.sky = sky_->at(point, normal).sky;
     // Lamps are asked for together: what is missing of each, weighted by its light.
     vec3 missing{0.0f};
@@ -75,6 +51,7 @@ class Caustics : public WaterLight {
 
  private:
   std::vector<LightCast> casts_;
+  FieldLight field_;
   std::vector<PointLight> lamps_;
   std::shared_ptr<const WaterLight> sky_;
 };
@@ -83,20 +60,31 @@ class Caustics : public WaterLight {
 
 std::shared_ptr<const WaterLight> caustics(const Surface& surface, const Scene& scene, const Material& material,
                                            const CausticsOptions& options, StageTimes* times, const Bounds& region) {
-  require_options(options);
+  require_caustics(options);
   const Bounds box = casting_box(surface, region);
   std::vector<LightCast> casts;
-  if (box.empty()) return std::make_shared<Caustics>(std::move(casts), scene.lamps(), nullptr);
-  for (const LightSource& light : caustics_lights(scene, box, options.most_lights)) {
+  FieldLight field;
+  if (box.empty()) return std::make_shared<Caustics>(std::move(casts), std::move(field), scene.lamps(), nullptr);
+  const std::vector<LightSource> lights = caustics_lights(scene, box, options.most_lights);
+  // The sun by the water's heights; lamps, and what light does not pass, by triangles.
+  const bool by_field = options.method != CausticsMethod::triangles && material.transparent;
+  const bool walls = options.on_walls && (by_field || surface.height_field());
+  for (const LightSource& light : lights) {
+    if (light.sun && (by_field || walls)) {
+      CausticsOptions asked = options;
+      if (!by_field) asked.method = CausticsMethod::triangles;
+      field = field_light(*FieldOf(surface, scene, box, times), light, scene, material, asked, times);
+    }
+    if (light.sun && by_field) continue;
     casts.push_back(cast_light(surface, light, box, scene, material, options, times));
     casts.back().screen = {};
   }
   std::shared_ptr<const WaterLight> sky;
-  {
+  if (!field.plane) {
     const StageTimer timer(times, "caustics sky");
     sky = sky_shadow(surface, scene.environment(), scene.ground(), material, region, !scene.solid_bounds().empty());
   }
-  return std::make_shared<Caustics>(std::move(casts), scene.lamps(), std::move(sky));
+  return std::make_shared<Caustics>(std::move(casts), std::move(field), scene.lamps(), std::move(sky));
 }
 
 }  // namespace meniscus

@@ -51,15 +51,16 @@ void blur_any(Image<T>& image, float sigma_px) {
   });
 }
 
-}  // namespace
+float* values_of(Image<vec3>& image, int y) { return &image.row(y)->x; }
+float* values_of(Image<float>& image, int y) { return image.row(y); }
 
-void blur(Image<vec3>& image, float sigma_px) { blur_any(image, sigma_px); }
-void blur(Image<float>& image, float sigma_px) { blur_any(image, sigma_px); }
-
-void blur_finely(Image<vec3>& image, float sigma_px) {
+/// Values of a texel lie side by side, `channels` of them.
+template <class T>
+void blur_finely_any(Image<T>& image, float sigma_px) {
+  constexpr int channels = static_cast<int>(sizeof(T) / sizeof(float));
   constexpr float kLargest = 6.0f, kReach = 3.0f;
   if (!(sigma_px > 0.05f) || image.empty()) return;
-  if (sigma_px > kLargest) return blur(image, sigma_px);
+  if (sigma_px > kLargest) return blur_any(image, sigma_px);
   const int radius = static_cast<int>(std::ceil(kReach * sigma_px));
   std::vector<float> weight(static_cast<std::size_t>(2 * radius + 1));
   float all = 0;
@@ -68,38 +69,45 @@ void blur_finely(Image<vec3>& image, float sigma_px) {
     all += weight[static_cast<std::size_t>(k + radius)] = std::exp(-0.5f * x * x);
   }
   for (float& w : weight) w /= all;
-  const int width = image.width(), height = image.height(), values = 3 * width;
+  const int width = image.width(), height = image.height(), values = channels * width;
   // Rows without light stay so along x, and are left out along y.
   std::vector<std::uint8_t> lit(static_cast<std::size_t>(height));
   parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> line(static_cast<std::size_t>(values + 6 * radius), 0.0f);
+    std::vector<float> line(static_cast<std::size_t>(values + 2 * channels * radius), 0.0f);
     for (std::size_t y = begin; y < end; ++y) {
-      float* row = &image.row(static_cast<int>(y))->x;
+      float* row = values_of(image, static_cast<int>(y));
       lit[y] = std::any_of(row, row + values, [](float v) { return v != 0; });
       if (!lit[y]) continue;
-      std::copy(row, row + values, line.begin() + 3 * radius);
+      std::copy(row, row + values, line.begin() + channels * radius);
       std::fill(row, row + values, 0.0f);
       for (int k = 0; k <= 2 * radius; ++k) {
         const float w = weight[static_cast<std::size_t>(k)];
-        const float* from = line.data() + 3 * k;
+        const float* from = line.data() + channels * k;
         for (int i = 0; i < values; ++i) row[i] += w * from[i];
       }
     }
   });
-  Image<vec3> result(width, height);
+  Image<T> result(width, height);
   parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      float* row = &result.row(y)->x;
+      float* row = values_of(result, y);
       for (int k = -radius; k <= radius; ++k) {
         if (y + k < 0 || y + k >= height || !lit[static_cast<std::size_t>(y + k)]) continue;
         const float w = weight[static_cast<std::size_t>(k + radius)];
-        const float* from = &image.row(y + k)->x;
+        const float* from = values_of(image, y + k);
         for (int i = 0; i < values; ++i) row[i] += w * from[i];
       }
     }
   });
   image = std::move(result);
 }
+
+}  // namespace
+
+void blur(Image<vec3>& image, float sigma_px) { blur_any(image, sigma_px); }
+void blur(Image<float>& image, float sigma_px) { blur_any(image, sigma_px); }
+void blur_finely(Image<vec3>& image, float sigma_px) { blur_finely_any(image, sigma_px); }
+void blur_finely(Image<float>& image, float sigma_px) { blur_finely_any(image, sigma_px); }
 
 LightMap::LightMap(const View& view, Image<Fractions> texels, Image<float> first)
     : texels_(std::move(texels)),

@@ -39,5 +39,6 @@ void blur(Image<vec3>& image, float sigma_px);
 void blur(Image<float>& image, float sigma_px);
 /// By a Gaussian whatever its width; beyond the edge there is nothing.
 void blur_finely(Image<vec3>& image, float sigma_px);
+void blur_finely(Image<float>& image, float sigma_px);
 
 }  // namespace meniscus
