@@ -25,12 +25,12 @@ struct FluidOptions {
   Solver solver = Solver::sph;
   float spacing = 0;           ///< m; edge of the cube of water that one particle stands for; required, > 0
   float smoothing_length = 0;  ///< m; support of the kernels; default 2 spacings
-  float step = 0;              ///< s; default 0.003 for sph (less where it would not be stable), 1/120 for pbf
+  float step = 0;              ///< s; default 0.003 for sph (less for small spacings), 1/120 for pbf
   float rest_density = 1000;   ///< kg/m^3
   float stiffness = 0;         ///< sph: k of p = k (rho - rho_0), m^2/s^2; default as stiff as the step allows
   float viscosity = -1;        ///< sph: Pa s (of the model); pbf: c of XSPH, 0 .. 1; negative: default
   float surface_tension = -1;  ///< sph: N/m (of the model); negative: default
-  int iterations = 4;          ///< pbf: of the density constraint in each step, 1 .. 64
+  int iterations = 4;          ///< pbf: of the density constraint in each step, 1 .. 64; one is taken as two
   float vorticity = -1;        ///< pbf: of the vorticity confinement; negative: default
   vec3 gravity{0, -9.81f, 0};  ///< m/s^2
 };

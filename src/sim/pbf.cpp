@@ -1,11 +1,246 @@
 #include "sim/pbf.h"
 
-namespace meniscus {
+#include <cmath>
 
-void fill_pbf_defaults(FluidOptions& options) {
-  if (options.step == 0) options.step = 1.0f / 120.0f;
+#include "meniscus/formulas/fluids.h"
+#include "sim/wall_kernel.h"
+
+namespace meniscus {
+namespace {
+
+/// Part of XSPH's blend that acts at walls: between slipping and sticking.
+constexpr float kWallFriction = 0.25f;
+/// The walls' own push, times h^2; 2 and more would not be stable.
+constexpr float kWallPush = 0.1f;
+/// With a single iteration nothing dampens what it overshoots: energy grows.
+constexpr int kFewestIterations = 2;
+/// A particle moves no farther than this in a step, in smoothing lengths; what is faster is slowed.
+constexpr float kFarthest = 1.0f;
+
+class PbfSolver final : public FluidSolver {
+ public:
+  explicit PbfSolver(const FluidOptions& options)
+      : options_(with_defaults(options)), constants_(pbf_constants(options_)), longest_(longest_pbf_step(options_)) {}
+
+  void step(Fluid& fluid, const Boundary& boundary, vec3 gravity, std::span<const vec3> forces, float dt,
+            std::span<Impulse> impulses, StageTimes* times) override {
+    if (fluid.size() == 0) return;
+    const int parts = std::max(1, static_cast<int>(std::ceil(dt / longest_ * 0.999f)));
+    for (int part = 0; part < parts; ++part)
+      part_step(fluid, boundary, gravity, forces, dt / static_cast<float>(parts), impulses, times);
+  }
+  float mean_neighbours() const override { return neighbours_.mean(); }
+  float longest_step() const override { return longest_; }
+
+ private:
+  void part_step(Fluid& fluid, const Boundary& boundary, vec3 gravity, std::span<const vec3> forces, float dt,
+                 std::span<Impulse> impulses, StageTimes* times) {
+    const std::size_t count = fluid.size();
+    const auto over_pieces = [&](const char* stage, auto body) {
+      const StageTimer timer(times, stage);
+      parallel_for(count, Neighbours::kPiece, body);
+    };
+    const auto each = [&](const char* stage, auto body) {
+      over_pieces(stage, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+      });
+    };
+    for (auto* values : {&ahead_x_, &ahead_y_, &ahead_z_}) values->resize(count);
+    each("move", [&](std::size_t i) { predict(fluid, i, forces.empty() ? gravity : gravity + forces[i], dt); });
+    {
+      const StageTimer timer(times, "neighbours");
+      neighbours_.find(ahead_x_, ahead_y_, ahead_z_, constants_.h);
+    }
+    {
+      const StageTimer timer(times, "walls");
+      walls_.find(boundary, neighbours_, constants_.h);
+      impulses_.clear(neighbours_.pieces());
+    }
+    state_.resize(count, options_.vorticity > 0);
+    each("walls", [&](std::size_t i) { begin_at_walls(fluid, i); });
+    for (int iteration = 0; iteration < std::max(options_.iterations, kFewestIterations); ++iteration) {
+      over_pieces("constraint", [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) feel_walls(i);
+        pbf_lambda(constants_, neighbours_, state_, begin, end);
+      });
+      over_pieces("constraint",
+                  [&](std::size_t begin, std::size_t end) { pbf_change(constants_, neighbours_, state_, begin, end); });
+      each("constraint", [&](std::size_t i) { change(boundary, i, dt); });
+    }
+    each("velocity", [&](std::size_t i) {
+      const vec3 velocity = (place(i) - start_of(fluid, i)) / dt;
+      state_.vx[i] = velocity.x;
+      state_.vy[i] = velocity.y;
+      state_.vz[i] = velocity.z;
+    });
+    over_pieces("velocity",
+                [&](std::size_t begin, std::size_t end) { pbf_blend(constants_, neighbours_, state_, begin, end); });
+    each("velocity", [&](std::size_t i) { finish(fluid, boundary, i); });
+    if (options_.vorticity > 0) {
+      over_pieces("velocity", [&](std::size_t begin, std::size_t end) {
+        pbf_curl_slope(constants_, neighbours_, state_, begin, end);
+      });
+      each("velocity", [&](std::size_t i) { confine(fluid, i, dt); });
+    }
+    impulses_.add_to(impulses);
+  }
+
+  vec3 place(std::size_t i) const { return {state_.x[i], state_.y[i], state_.z[i]}; }
+  vec3 start_of(const Fluid& fluid, std::size_t i) const {
+    const std::uint32_t given = neighbours_.grid().given_index(i);
+    return {fluid.x[given], fluid.y[given], fluid.z[given]};
+  }
+  void set_place(std::size_t i, vec3 place) {
+    state_.x[i] = place.x;
+    state_.y[i] = place.y;
+    state_.z[i] = place.z;
+  }
+
+  void predict(const Fluid& fluid, std::size_t given, vec3 outer, float dt) {
+    vec3 velocity = vec3{fluid.vx[given], fluid.vy[given], fluid.vz[given]} + dt * outer;
+    const float speed = length(velocity), fastest = kFarthest * constants_.h / dt;
+    if (!(speed <= fastest)) velocity = std::isfinite(speed) ? velocity * (fastest / speed) : vec3(0.0f);
+    ahead_x_[given] = fluid.x[given] + dt * velocity.x;
+    ahead_y_[given] = fluid.y[given] + dt * velocity.y;
+    ahead_z_[given] = fluid.z[given] + dt * velocity.z;
+  }
+
+  /// What began the step within a wall is put out of it without becoming faster.
+  void begin_at_walls(Fluid& fluid, std::size_t i) {
+    const std::uint32_t given = neighbours_.grid().given_index(i);
+    const vec3 start = start_of(fluid, i), ahead = neighbours_.grid().position(i);
+    vec3 out = neighbours_.coincident(i) ? 1e-3f * constants_.h * some_direction(given) : vec3{0.0f};
+    for (const Wall& wall : walls_.of(i)) {
+      const float distance = wall.distance + dot(wall.normal, start + out - ahead);
+      if (distance < contact()) out += limited(wall, contact() - distance) * wall.normal;
+    }
+    fluid.x[given] += out.x;
+    fluid.y[given] += out.y;
+    fluid.z[given] += out.z;
+    set_place(i, ahead + out);
+  }
+
+  float contact() const { return kContact_rel * options_.spacing; }
+  /// Out of bodies only so far at once, lest one that appears within the water throws it about.
+  float limited(const Wall& wall, float way) const { return wall.body < 0 ? way : std::min(way, options_.spacing); }
+
+  /// The walls' part of the density and of its gradient, where the particle is now.
+  void feel_walls(std::size_t i) {
+    const std::span<const Wall> walls = walls_.of(i);
+    float solid = 0;
+    vec3 gradient{0.0f};
+    if (!walls.empty()) {
+      float distance[Boundary::kMostWalls];
+      distances(walls, i, distance);
+      const WallShares shares = wall_shares(walls, distance, constants_.h);
+      solid = constants_.solid * shares.solid;
+      for (std::size_t w = 0; w < walls.size(); ++w)
+        gradient -= constants_.solid * shares.weight[w] * formulas::spiky_over_plane(distance[w], constants_.h) *
+                    walls[w].normal;
+    }
+    state_.solid[i] = solid;
+    state_.wall_x[i] = gradient.x;
+    state_.wall_y[i] = gradient.y;
+    state_.wall_z[i] = gradient.z;
+  }
+
+  void distances(std::span<const Wall> walls, std::size_t i, float* distance) const {
+    const vec3 moved = place(i) - neighbours_.grid().position(i);
+    for (std::size_t w = 0; w < walls.size(); ++w) distance[w] = walls[w].distance + dot(walls[w].normal, moved);
+  }
+
+  void change(const Boundary& boundary, std::size_t i, float dt) {
+    const vec3 before = place(i);
+    vec3 now = before + vec3{state_.dx[i], state_.dy[i], state_.dz[i]};
+    const std::span<const Wall> walls = walls_.of(i);
+    if (!walls.empty()) {
+      const float mass_rate = options_.rest_density * constants_.volume / dt;
+      const vec3 centre = neighbours_.grid().position(i);
+      float distance[Boundary::kMostWalls];
+      distances(walls, i, distance);
+      const WallShares shares = wall_shares(walls, distance, constants_.h);
+      const auto push = [&](const Wall& wall, vec3 way) {
+        now += way;
+        if (wall.body >= 0) impulses_.add(i / Neighbours::kPiece, boundary, wall.body, -mass_rate * way, before);
+      };
+      // The slope of the particle's own constraint, as for its neighbours, and the walls' own push. (To count lambda
+      // twice, as if the water beyond the wall were pressed as well, feeds energy in: water at rest then boils.)
+      for (std::size_t w = 0; w < walls.size(); ++w) {
+        const float slope = constants_.solid * shares.weight[w] * formulas::spiky_over_plane(distance[w], constants_.h);
+        const float own = kWallPush * constants_.h * constants_.h * wall_barrier(distance[w], options_.spacing);
+        push(walls[w], (own - state_.lambda[i] * slope) * walls[w].normal);
+      }
+      for (int pass = 0; pass < (walls.size() > 1 ? 3 : 1); ++pass)
+        for (const Wall& wall : walls) {
+          const float gap = wall.distance + dot(wall.normal, now - centre);
+          if (gap < contact()) push(wall, limited(wall, contact() - gap) * wall.normal);
+        }
+    }
+    set_place(i, now);
+  }
+
+  /// Speeds and places to where they are kept; walls drag.
+  void finish(Fluid& fluid, const Boundary& boundary, std::size_t i) {
+    const std::uint32_t given = neighbours_.grid().given_index(i);
+    vec3 velocity{state_.vx[i], state_.vy[i], state_.vz[i]};
+    vec3 added{state_.dx[i], state_.dy[i], state_.dz[i]};
+    const std::span<const Wall> walls = walls_.of(i);
+    if (!walls.empty() && constants_.blend > 0) {
+      float distance[Boundary::kMostWalls];
+      distances(walls, i, distance);
+      const WallShares shares = wall_shares(walls, distance, constants_.h);
+      const float mass = options_.rest_density * constants_.volume;
+      for (std::size_t w = 0; w < walls.size(); ++w) {
+        const float part =
+            kWallFriction * constants_.blend * shares.weight[w] * formulas::poly6_beyond(distance[w], constants_.h);
+        const vec3 drag = part * (walls[w].velocity - velocity);
+        added += drag;
+        if (walls[w].body >= 0) impulses_.add(i / Neighbours::kPiece, boundary, walls[w].body, -mass * drag, place(i));
+      }
+    }
+    velocity += added;
+    fluid.vx[given] = velocity.x;
+    fluid.vy[given] = velocity.y;
+    fluid.vz[given] = velocity.z;
+    fluid.x[given] = state_.x[i];
+    fluid.y[given] = state_.y[i];
+    fluid.z[given] = state_.z[i];
+  }
+
+  /// v += dt epsilon N x omega with N along the gradient of |omega|.                      [Macklin2013] eq. 16
+  void confine(Fluid& fluid, std::size_t i, float dt) const {
+    const vec3 slope{state_.dx[i], state_.dy[i], state_.dz[i]};
+    const float steepness = length(slope);
+    if (!(steepness * constants_.h > 1e-3f * state_.curl[i])) return;
+    const vec3 curl{state_.curl_x[i], state_.curl_y[i], state_.curl_z[i]};
+    const vec3 added = dt * options_.vorticity * constants_.h / steepness * cross(slope, curl);
+    const std::uint32_t given = neighbours_.grid().given_index(i);
+    fluid.vx[given] += added.x;
+    fluid.vy[given] += added.y;
+    fluid.vz[given] += added.z;
+  }
+
+  FluidOptions options_;
+  PbfConstants constants_;
+  float longest_;
+  Neighbours neighbours_;
+  NearWalls walls_;
+  ImpulseSums impulses_;
+  PbfState state_;
+  std::vector<float> ahead_x_, ahead_y_, ahead_z_;  ///< predicted positions, m, in the given order
+};
+
+}  // namespace
+
+void PbfState::resize(std::size_t size, bool vorticity) {
+  for (auto* values : {&x, &y, &z, &vx, &vy, &vz, &solid, &wall_x, &wall_y, &wall_z, &lambda, &dx, &dy, &dz})
+    values->resize(size);
+  if (vorticity)
+    for (auto* values : {&curl_x, &curl_y, &curl_z, &curl}) values->resize(size);
 }
-float longest_pbf_step(const FluidOptions&) { return 1.0f / 30.0f; }
-std::unique_ptr<FluidSolver> make_pbf_solver(const FluidOptions& options) { return make_sph_solver(options); }
+
+std::unique_ptr<FluidSolver> make_pbf_solver(const FluidOptions& options) {
+  return std::make_unique<PbfSolver>(options);
+}
 
 }  // namespace meniscus
