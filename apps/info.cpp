@@ -87,6 +87,73 @@ void print(const Guess& guess) {
                            guess.reasoning, "", guess.option);
 }
 
+std::string motion_of(const ObstacleRole& role) {
+  if (role.dynamic) return fmt::format("dynamic, {:g} kg/m^3", role.density);
+  return role.path.empty() ? "fixed" : "path";
+}
+
+/// What is known of frames that are made up or simulated, without making any.
+Json foreseen_json(const FrameSequence& sequence, const SceneFile& scene) {
+  const Foreseen& foreseen = *sequence.foreseen;
+  Json json;
+  json["kind"] = scene.simulation ? "simulation" : "heights";
+  json["frames"] = sequence.frames.size();
+  json["fps"] = scene.simulation ? scene.simulation->frames_per_second : scene.heights->frames_per_second;
+  json["bounds"] = Json::array({json_of(foreseen.bounds.low), json_of(foreseen.bounds.high)});
+  json["up"] = std::string(name_of(foreseen.up));
+  if (!scene.simulation) {
+    json["waves"] = scene.heights->waves.size();
+    return json;
+  }
+  const SimulationOptions& simulation = scene.simulation->simulation;
+  json["solver"] = simulation.fluid.solver == Solver::sph ? "sph" : "pbf";
+  json["particles_at_start"] = foreseen.particles;
+  json["spacing"] = json_of(foreseen.spacing);
+  json["events"] = {{"pour", simulation.pours.size()},
+                    {"stir", simulation.stirs.size()},
+                    {"tilt", simulation.tilts.size()},
+                    {"drag", simulation.drags.size()}};
+  json["obstacles"] = Json::array();
+  for (const BodyOptions& body : scene.picture.bodies)
+    if (body.role)
+      json["obstacles"].push_back(
+          {{"name", body.name}, {"motion", motion_of(*body.role)}, {"appears", body.role->appears}});
+  return json;
+}
+
+void print_foreseen(const FrameSequence& sequence, const SceneFile& scene) {
+  const Foreseen& foreseen = *sequence.foreseen;
+  const Bounds& box = foreseen.bounds;
+  const double fps = scene.simulation ? scene.simulation->frames_per_second : scene.heights->frames_per_second;
+  const std::size_t frames = sequence.frames.size();
+  std::cout << fmt::format("{} {} frames, {:g} a second: {:.3g} s\n", frames,
+                           scene.simulation ? "simulated" : "made-up", fps, static_cast<double>(frames) / fps);
+  if (scene.simulation)
+    std::cout << fmt::format("  {} particles at the start, spacing {:.4g} m, solver {}\n", foreseen.particles,
+                             foreseen.spacing,
+                             scene.simulation->simulation.fluid.solver == Solver::sph ? "sph" : "pbf");
+  std::cout << fmt::format("  {} from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n",
+                           scene.simulation ? "tank" : "water", box.low.x, box.low.y, box.low.z, box.high.x, box.high.y,
+                           box.high.z);
+  if (!scene.simulation) {
+    std::cout << fmt::format("  {} trains of waves{}\n", scene.heights->waves.size(),
+                             scene.heights->image.empty() ? "" : " on " + scene.heights->image);
+    return;
+  }
+  for (const BodyOptions& body : scene.picture.bodies)
+    if (body.role)
+      std::cout << fmt::format("  obstacle {}: {}\n", body.name.empty() ? "without a name" : body.name,
+                               motion_of(*body.role));
+  const SimulationOptions& simulation = scene.simulation->simulation;
+  const auto tell = [](std::size_t count, const char* what) {
+    if (count > 0) std::cout << fmt::format("  {} x {}\n", count, what);
+  };
+  tell(simulation.pours.size(), "pour");
+  tell(simulation.stirs.size(), "stir");
+  tell(simulation.tilts.size(), "tilt");
+  tell(simulation.drags.size(), "drag");
+}
+
 FrameInfo read(const FrameSequence& sequence, const FramePath& path, const SurveyOptions& options) {
   FrameInfo frame;
   frame.path = path.path;
@@ -115,7 +182,9 @@ void info(InfoArguments& arguments) {
 
   Json frames = Json::array();
   std::size_t failed = 0;
+  if (sequence.foreseen && !arguments.json) print_foreseen(sequence, scene);
   for (const FramePath& path : sequence.frames) {
+    if (sequence.foreseen) break;  // they are made when they are drawn
     const FrameInfo frame = read(sequence, path, survey_options);
     failed += frame.problem.empty() ? 0 : 1;
     if (arguments.json)
@@ -126,10 +195,12 @@ void info(InfoArguments& arguments) {
 
   // What the pictures of the sequence would have in common.
   std::vector<Guess> guesses;
-  if (failed < sequence.frames.size()) guesses = guesses_of(survey_frames(sequence, survey_options), options);
+  if (failed < sequence.frames.size() && !scene.heights)
+    guesses = guesses_of(survey_frames(sequence, survey_options), options);
   if (arguments.json) {
     Json json;
     json["frames"] = std::move(frames);
+    if (sequence.foreseen) json["foreseen"] = foreseen_json(sequence, scene);
     json["guesses"] = Json::array();
     for (const Guess& guess : guesses) json["guesses"].push_back(guess_json(guess));
     json["notes"] = sequence.notes;

@@ -71,6 +71,8 @@ FrameSequence InputOptions::find(bool quiet) const {
 
 FrameSequence InputOptions::find_in(const SceneFile& scene, bool quiet) const {
   if (scene.waves) return select(waves_sequence(*scene.waves));
+  if (scene.heights) return select(heights_sequence(*scene.heights, scene.up.value_or(Axis::y)));
+  if (scene.simulation) return select(simulated_sequence(*scene.simulation, scene.picture.bodies));
   return find(quiet);
 }
 

@@ -51,10 +51,14 @@ SceneFile scene_of(RenderArguments& arguments) {
   SceneFile scene;
   const std::optional<std::string> path = arguments.input.scene_file();
   if (path) scene = read_scene_file(*path);
-  if (path && scene.frames.empty() && !scene.waves)
-    throw Error(
-        ErrorCode::not_found,
-        {"the scene file names no water", "\"water\": {\"frames\": ...} or {\"waves\": {...}}", {}, *path, {}, {}, {}});
+  if (path && scene.frames.empty() && !scene.waves && !scene.simulation && !scene.heights)
+    throw Error(ErrorCode::not_found, {"the scene file names no water",
+                                       "\"water\": {\"frames\": ...}, or waves, heights or simulation",
+                                       {},
+                                       *path,
+                                       {},
+                                       {},
+                                       {}});
   SequenceOptions& sequence = arguments.sequence;
   sequence.output = arguments.output.empty() ? scene.output : arguments.output;
   if (sequence.output.empty()) throw UsageError("--output is needed: where the picture goes");

@@ -478,6 +478,41 @@ class SimulatedScene {
 /// The same as a sequence: its frames must be read in rising order; those between are simulated and left out.
 FrameSequence simulated_sequence(const SimulatedWater& water, std::vector<BodyOptions> bodies);
 
+/// What became of one simulated frame.
+struct SimulatedFrame {
+  std::string output;
+  std::size_t particles = 0;
+  double time = 0;        ///< s, of the water
+  std::size_t steps = 0;  ///< of the simulation since the frame before
+  double mean_neighbours = 0;
+  double kinetic_energy = 0;  ///< J
+  bool skipped = false;       ///< written before, and left as it was
+  StageTimes times;
+  double frame_ms = 0;  ///< of the whole
+};
+
+struct SimulationReport {
+  std::vector<SimulatedFrame> frames;
+  StageTimes times;               ///< sums
+  std::vector<std::string> ways;  ///< files of the moving bodies' transforms; one a body, empty for those that stand
+};
+
+/// Simulates and writes frames as PLY files, and beside them, when all are there, the way of each body that moves or
+/// appears: a JSON file as `frames` of a scene file's mesh takes it.
+/// @param output  a name with {} for the frame's number, .ply; without one for a single frame
+/// @param frames  at most so many
+/// @param resume  frames that are there already are left as they are; the simulation runs through them all the same
+/// @throws Error  invalid_argument: several frames for one file, another kind of file; io_failed; as SimulatedScene
+SimulationReport write_simulation(
+    SimulatedScene& scene, std::span<const BodyOptions> bodies, const std::string& output, std::size_t frames,
+    bool resume = false, FunctionRef<void(const SimulatedFrame&, std::size_t, std::size_t)>* on_frame = nullptr);
+
+/// The text of a scene file that draws what write_simulation() has written: the scene file's own, with frames instead
+/// of the simulation and ways instead of obstacles. Paths are relative to `folder`.
+/// @throws Error  as read_scene_file()
+std::string scene_of_written_frames(const std::string& scene_path, const std::string& folder, const std::string& output,
+                                    const SimulationReport& report);
+
 // --- A scene for measurements ------------------------------------------------------------------------------
 
 /// A tank of water of about 2 : 1 : 2 m (y up) with waves, and a few hundred drops of 1 to 500 particles above it.

@@ -16,10 +16,13 @@ constexpr float kParticles = 20000;
 
 float volume_of(const Bounds& box) { return box.extent().x * box.extent().y * box.extent().z; }
 
-bool lies_in(const Bounds& box, const Bounds& room) {
+/// The room is open at its top.
+bool lies_in(const Bounds& box, const Bounds& room, Axis up) {
   const vec3 slack = 1e-4f * room.extent();
   for (int axis = 0; axis < 3; ++axis)
-    if (box.low[axis] < room.low[axis] - slack[axis] || box.high[axis] > room.high[axis] + slack[axis]) return false;
+    if (box.low[axis] < room.low[axis] - slack[axis] ||
+        (axis != static_cast<int>(up) && box.high[axis] > room.high[axis] + slack[axis]))
+      return false;
   return true;
 }
 
@@ -71,7 +74,7 @@ void finish_simulation(const JsonValue& value, Draft& draft) {
   simulation.fluid.gravity = draft.gravity.value_or(-9.81f * direction_of(simulation.up));
   if (simulation.blocks.empty() && simulation.pours.empty()) value.refuse("has no water", "blocks or pour", "neither");
   for (std::size_t i = 0; i < simulation.blocks.size(); ++i)
-    if (!lies_in(simulation.blocks[i], simulation.tank))
+    if (!lies_in(simulation.blocks[i], simulation.tank, simulation.up))
       value.member("blocks").at(i).refuse("reaches out of the tank", "a block within the tank",
                                           value.member("blocks").at(i).dump());
   if (!(simulation.fluid.spacing > 0)) simulation.fluid.spacing = scene.spacing.value_or(spacing_for(simulation));
