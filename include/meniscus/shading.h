@@ -52,6 +52,9 @@ struct VirtualEyeOptions {
   float trapezium_a = 0;         ///< m; half width at the object; 0: by its size
   float trapezium_b = 0;         ///< m; half width at the eye's end; 0: by its size
   bool per_point = false;        ///< each point from its own virtual eye: for wide objects, beyond the paper
+  /// Objects are looked up where the ray passes them, not by its direction alone: they keep together under waves. Beyond
+  /// the paper; needs neither scale_correction nor per_point, which then do nothing.
+  bool object_position = false;
   bool static_position = true;   ///< off: what stands still is looked up by direction alone, as published
   float adaptation_width = 0;    ///< m beyond an object's outline; 0: by its size
   float combine_distance = -1;   ///< m; objects nearer to each other share an eye; negative: default
@@ -141,7 +144,8 @@ CausticsMethod caustics_method_of(std::string_view name);
 struct CausticsOptions {
   CausticsMethod method = CausticsMethod::triangles;
   /// simple: I = a (z - z_min) / (z_max - z_min) + b |n_x + n_y| + c                      [Cords2008] eq. 4
-  float simple_a = 0.6f, simple_b = 1.5f, simple_c = 0.5f;
+  /// With b < 0 crests and troughs are bright lines, as caustics are.
+  float simple_a = 1.5f, simple_b = -0.8f, simple_c = 0.35f;
   /// simple: I scaled so that the floor gets as much light as under still water; off: I as published.
   bool simple_keeps_mean = true;
   /// Light of the sun that the water mirrors onto the walls above it and onto bodies; triangles: where the surface is a

@@ -46,13 +46,18 @@ void require_material(const Material& material) {
                 "roughness not in [0, 1]");
 }
 
-/// What is seen beside the water; the sun's disc is at least a pixel wide.
+/// The sun's disc, at least a pixel wide.
+vec3 sun_disc(const Ray& ray, Beam beam, const Scene& scene) {
+  const Environment& environment = scene.environment();
+  if (!environment.sun_visible()) return vec3{0.0f};
+  return glm::min(environment.sun_glare(ray.direction, beam.spread * beam.spread), vec3{200.0f});
+}
+
+/// What is seen beside the water.
 vec3 background(const Ray& ray, Beam beam, const Scene& scene) {
   vec3 radiance = scene.radiance(ray, beam);
-  const Environment& environment = scene.environment();
-  if (!environment.sun_visible()) return radiance;
-  const vec3 disc = environment.sun_glare(ray.direction, beam.spread * beam.spread);
-  if (disc != vec3{0.0f} && !(scene.distance(ray) < kInfinity)) radiance += glm::min(disc, vec3{200.0f});
+  const vec3 disc = sun_disc(ray, beam, scene);
+  if (disc != vec3{0.0f} && !(scene.distance(ray) < kInfinity)) radiance += disc;
   return radiance;
 }
 
@@ -90,6 +95,10 @@ class Shading {
                                                        : Beam{view.pixel_size(1.0f), 0.0f};
     spacing_ = optics.surface ? optics.surface->spacing() : 0.0f;
     glass_ = scene.tank().style == TankStyle::glass;
+    if (optics.behind && points.empty() && optics.behind->depth.width() == view.width &&
+        optics.behind->depth.height() == view.height && optics.behind->radiance.width() == view.width &&
+        optics.behind->radiance.height() == view.height)
+      behind_ = optics.behind;
     dispersive_ = optics.options.dispersion && material.dispersion != vec3{0.0f};
   }
 
@@ -139,7 +148,7 @@ class Shading {
     if (coverage > 0) flatten_at_walls(scene_.tank(), spacing_, ray, depth, normal);
 
     // A solid before the water hides it; an eye in the water has its own order.
-    if (!water_.eye_in_water && coverage > 0 && scene_.distance(ray) < depth) coverage = 0;
+    if (!water_.eye_in_water && coverage > 0 && solid_distance(i, ray) < depth) coverage = 0;
     if (water_.eye_in_water && coverage > 0) {
       // Water that ends just before a solid stands against it: there is no surface between them.
       const SolidHit solid = scene_.hit(ray, beam_);
@@ -147,7 +156,7 @@ class Shading {
       if (solid.found() && gap * -glm::dot(ray.direction, solid.face_normal) < kAgainst * spacing_) coverage = 0;
     }
     if (coverage < 1.0f)
-      picture_[i] = water_.eye_in_water ? deep_radiance(ray, beam_, scene_, material_) : background(ray, beam_, scene_);
+      picture_[i] = water_.eye_in_water ? deep_radiance(ray, beam_, scene_, material_) : background_at(i, ray);
     pixel.coverage = coverage;
     if (!(coverage > 0)) return pixel;
     Sample& sample = pixel.sample;
@@ -161,6 +170,18 @@ class Shading {
     sample.normal_variance = variance_.at(i);
     sample.fresnel = optics_.options.fresnel;
     return pixel;
+  }
+
+  /// Distance to the first solid, from the picture of the scene where that was handed over.
+  float solid_distance(std::size_t i, const Ray& ray) const {
+    return behind_ ? behind_->depth[i] : scene_.distance(ray);
+  }
+
+  vec3 background_at(std::size_t i, const Ray& ray) const {
+    if (!behind_) return background(ray, beam_, scene_);
+    vec3 radiance = behind_->radiance[i];
+    if (!(behind_->depth[i] < kInfinity)) radiance += sun_disc(ray, beam_, scene_);
+    return radiance;
   }
 
   Material material_of(const Wet& pixel) const {
@@ -239,6 +260,7 @@ class Shading {
   Image<vec3> picture_;
   Beam beam_;
   float spacing_ = 0;
+  const SceneBuffers* behind_ = nullptr;  ///< of the same pixels; null: rays
   bool glass_ = false, dispersive_ = false;
 };
 

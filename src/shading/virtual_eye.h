@@ -54,10 +54,14 @@ class EyeSide {
     std::int32_t index = 0;
     vec3 centre{0.0f};
     float radius = 0;
+    vec3 axis_top{0.0f}, axis{0.0f};  ///< from one end of the main axis to the other, m
   };
   bool draw_objects(std::span<const vec3> directions, std::span<MapTexel> texels) const;
   bool draw_still(std::span<const vec3> directions, std::span<MapTexel> texels) const;
   void look_still(vec3 from, vec3 direction, EyeLook& look) const;
+  void look_by_direction(vec3 from, vec3 direction, EyeLook& look) const;
+  void look_by_position(vec3 from, vec3 direction, EyeLook& look) const;
+  void add(const CubeMap::Cell& cell, vec3 from, std::int32_t only, EyeLook& look) const;
   float way_out(vec3 from, vec3 direction) const;
 
   Scene scene_, still_scene_;
@@ -66,7 +70,7 @@ class EyeSide {
   std::vector<VirtualEye> eyes_;     ///< of the bodies
   std::vector<Trapezium> trapezia_;  ///< of all objects; none: objects are seen everywhere
   Axis up_ = Axis::y;
-  bool per_point_ = false, by_position_ = true, nothing_still_ = false;
+  bool per_point_ = false, by_position_ = true, objects_by_position_ = false, nothing_still_ = false;
   Bounds room_;
   float slack_ = 0;
   std::unique_ptr<CubeMap> object_map_, still_map_;

@@ -13,6 +13,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Rays start this many texels before the plane, so that lookups between texels at the waterline find the object.
 constexpr float kBeforePlane = 1.5f;
+/// Lookups of an object by position: each but the last moves along the ray to the face that is seen.
+constexpr int kPasses = 3;
 
 /// The scene without some of its solids.
 Scene without(const Scene& scene, std::span<const WaterObject> objects) {
@@ -53,9 +55,12 @@ EyeSide::EyeSide(const Inputs& inputs, bool reflected)
       still_scene_(without(inputs.scene, inputs.objects)),
       up_(inputs.field.up),
       by_position_(inputs.options.static_position),
+      objects_by_position_(inputs.options.object_position),
       slack_(inputs.slack) {
   const vec3 eye = inputs.view.eye;
   const bool above_side = inputs.eye_above == reflected;  // of the water: what this side shows stands above it
+  VirtualEyeOptions object_options = inputs.options;
+  if (objects_by_position_) object_options.per_point = object_options.scale_correction = false;
   for (std::size_t i = 0; i < inputs.objects.size(); ++i) {
     const WaterObject& object = inputs.objects[i];
     if (inputs.options.trapezium)
@@ -63,16 +68,17 @@ EyeSide::EyeSide(const Inputs& inputs, bool reflected)
     if (above_side ? object.under && !object.pierces : !object.under) continue;
     const ApproximatingPlane plane = plane_of(object, eye, inputs.eye_above);
     eyes_.push_back(reflected ? VirtualEye::reflected(plane, eye)
-                              : VirtualEye::refracted(plane, eye, object, inputs.ratio, inputs.options));
+                              : VirtualEye::refracted(plane, eye, object, inputs.ratio, object_options));
     const VirtualEye& virtual_eye = eyes_.back();
-    Body body{alone(scene_, object), static_cast<std::int32_t>(i), object.bounds.centre(),
-              0.5f * glm::length(object.bounds.extent())};
+    Body body{alone(scene_, object),  static_cast<std::int32_t>(i),
+              object.bounds.centre(), 0.5f * glm::length(object.bounds.extent()),
+              object.axis_top,        object.axis_end - object.axis_top};
     // Scaled about a point that is not its centre, the ball moves.
     body.radius = body.radius * std::max(1.0f, virtual_eye.scale()) +
                   std::abs(virtual_eye.scale() - 1.0f) * glm::length(body.centre - virtual_eye.pivot());
     bodies_.push_back(std::move(body));
   }
-  per_point_ = !reflected && inputs.options.per_point && inputs.options.displaced_eye;
+  per_point_ = !reflected && object_options.per_point && inputs.options.displaced_eye;
 
   // What stands still is seen through the plane of the whole water; exact where the view's centre meets it.
   vec3 a = inputs.plane.point;
@@ -150,7 +156,7 @@ bool EyeSide::draw_objects(std::span<const vec3> directions, std::span<MapTexel>
     if (found.object < 0) continue;
     texels[i].radiance = scene_.lit(found.hit, found.ray, {0.0f, texel});
     texels[i].alpha = 1;
-    texels[i].distance = std::max(0.0f, found.hit.distance - found.from);
+    texels[i].distance = objects_by_position_ ? found.hit.distance : std::max(0.0f, found.hit.distance - found.from);
     texels[i].normal = found.hit.face_normal;
     texels[i].object = found.object;
   }
@@ -224,17 +230,12 @@ void EyeSide::look_still(vec3 from, vec3 direction, EyeLook& look) const {
     look.still_distance = by_position_ && distance < kInfinity ? distance : sum / look.still_alpha;
 }
 
-EyeLook EyeSide::look(vec3 from, vec3 direction) const {
-  EyeLook look;
-  look_still(from, direction, look);
-  if (bodies_.empty()) return look;
-  const CubeMap::Cell cell = object_map_->at(direction);
-  if (!cell.first) return look;
+void EyeSide::add(const CubeMap::Cell& cell, vec3 from, std::int32_t only, EyeLook& look) const {
   std::int32_t last = -1;
   float share = 1;
   for (int k = 0; k < 4; ++k) {
     const MapTexel& texel = cell.texel(k);
-    if (texel.object < 0) continue;
+    if (texel.object < 0 || (only >= 0 && texel.object != only)) continue;
     if (!trapezia_.empty() && texel.object != last) {
       last = texel.object;
       share = trapezia_[static_cast<std::size_t>(last)].weight(horizontal(from, up_));
@@ -245,6 +246,63 @@ EyeLook EyeSide::look(vec3 from, vec3 direction) const {
     look.object_distance += weight * texel.distance;
   }
   if (look.object_alpha > 0) look.object_distance /= look.object_alpha;
+}
+
+void EyeSide::look_by_direction(vec3 from, vec3 direction, EyeLook& look) const {
+  const CubeMap::Cell cell = object_map_->at(direction);
+  if (cell.first) add(cell, from, -1, look);
+}
+
+void EyeSide::look_by_position(vec3 from, vec3 direction, EyeLook& look) const {
+  float nearest = kInfinity;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const Body& body = bodies_[k];
+    const vec3 way = body.centre - from;
+    const float middle = glm::dot(way, direction), beside = glm::dot(way, way) - middle * middle;
+    if (beside > body.radius * body.radius || middle < -body.radius) continue;
+    // The ray's nearest point to the main axis lies in most objects that it meets.
+    const vec3 offset = body.axis_top - from;
+    const float along = glm::dot(body.axis, direction), square = glm::dot(body.axis, body.axis);
+    const float determinant = square - along * along;
+    float on_axis = 0.5f;
+    if (determinant > 1e-6f * square)
+      on_axis =
+          std::clamp((along * glm::dot(offset, direction) - glm::dot(offset, body.axis)) / determinant, 0.0f, 1.0f);
+    float distance = std::max(0.0f, glm::dot(offset + on_axis * body.axis, direction));
+    const vec3 eye = eyes_[k].position();
+    CubeMap::Cell cell;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const vec3 towards = from + distance * direction - eye;
+      cell = object_map_->at(towards);
+      if (!cell.first || pass == kPasses - 1) break;
+      const MapTexel& texel = cell.nearest();
+      if (texel.object != body.index) break;
+      // Onto the plane of the face that is seen there, or as near to it as the object is large.
+      const vec3 shown = eye + texel.distance / glm::length(towards) * towards;
+      const float facing = glm::dot(direction, texel.normal);
+      float next = glm::dot(shown - from, direction);
+      if (facing < -0.05f) next = glm::dot(shown - from, texel.normal) / facing;
+      distance = std::clamp(next, std::max(0.0f, middle - body.radius), middle + body.radius);
+    }
+    if (!cell.first || !(distance < nearest)) continue;
+    EyeLook one;
+    add(cell, from, body.index, one);
+    if (!(one.object_alpha > 0)) continue;
+    nearest = distance;
+    look.object = one.object + (1.0f - one.object_alpha) * look.object;
+    look.object_alpha = one.object_alpha + (1.0f - one.object_alpha) * look.object_alpha;
+    look.object_distance = distance;
+  }
+}
+
+EyeLook EyeSide::look(vec3 from, vec3 direction) const {
+  EyeLook look;
+  look_still(from, direction, look);
+  if (bodies_.empty()) return look;
+  if (objects_by_position_)
+    look_by_position(from, direction, look);
+  else
+    look_by_direction(from, direction, look);
   return look;
 }
 
