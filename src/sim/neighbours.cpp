@@ -14,6 +14,26 @@ void Neighbours::Lists::reserve(std::size_t wanted, std::size_t used) {
   capacity = larger;
 }
 
+void Candidates::gather(const ParticleGrid& grid, const ParticleGrid::CellBox& box) {
+  count = 0;
+  for (int cz = box.z0; cz <= box.z1; ++cz)
+    for (int cy = box.y0; cy <= box.y1; ++cy) {
+      const ParticleGrid::Run run = grid.run(box.x0, box.x1, cy, cz);
+      const std::size_t more = run.end - run.begin;
+      if (x.size() < count + more + 16) {
+        const std::size_t larger = 2 * (count + more + 16);
+        for (auto* values : {&x, &y, &z}) values->resize(larger);
+        index.resize(larger);
+      }
+      std::copy(grid.x() + run.begin, grid.x() + run.end, x.data() + count);
+      std::copy(grid.y() + run.begin, grid.y() + run.end, y.data() + count);
+      std::copy(grid.z() + run.begin, grid.z() + run.end, z.data() + count);
+      for (std::size_t k = 0; k < more; ++k) index[count + k] = static_cast<std::int32_t>(run.begin + k);
+      count += more;
+    }
+  for (std::size_t k = 0; k < 16; ++k) x[count + k] = y[count + k] = z[count + k] = 1e18f;
+}
+
 struct NeighbourSearch {
   Neighbours& all;
   float h;
@@ -21,30 +41,22 @@ struct NeighbourSearch {
   void piece(std::size_t begin, std::size_t end) const {
     const ParticleGrid& grid = *all.grid_;
     Neighbours::Lists& lists = all.lists_[begin / Neighbours::kPiece];
-    std::vector<ParticleGrid::Run> runs;
+    Candidates candidates;
     ParticleGrid::CellBox last{1, 1, 1, 0, 0, 0};
-    std::size_t used = 0, candidates = 0;
+    std::size_t used = 0;
     for (std::size_t i = begin; i < end; ++i) {
       // A little more than h: the rounding of cell borders must not hide a neighbour from one of two.
       const vec3 p = grid.position(i);
       const ParticleGrid::CellBox box = grid.cells(p - 1.0001f * h, p + 1.0001f * h);
       if (box.x0 != last.x0 || box.x1 != last.x1 || box.y0 != last.y0 || box.y1 != last.y1 || box.z0 != last.z0 ||
           box.z1 != last.z1) {
-        runs.clear();
-        candidates = 0;
-        for (int cz = box.z0; cz <= box.z1; ++cz)
-          for (int cy = box.y0; cy <= box.y1; ++cy) {
-            const ParticleGrid::Run run = grid.run(box.x0, box.x1, cy, cz);
-            if (run.begin >= run.end) continue;
-            runs.push_back(run);
-            candidates += run.end - run.begin;
-          }
+        candidates.gather(grid, box);
         last = box;
       }
-      lists.reserve(used + std::min(candidates, Neighbours::kMost) + 64, used);
+      lists.reserve(used + candidates.count + 64, used);
       float least;
       const std::size_t found =
-          near_in_runs(grid, runs, i, h * h, lists.index.get() + used, lists.r2.get() + used, least);
+          near_among(candidates, grid, i, h * h, lists.index.get() + used, lists.r2.get() + used, least);
       all.first_[i] = static_cast<std::uint32_t>(used);
       all.count_[i] = static_cast<std::uint32_t>(found);
       all.coincident_[i] = least < 1e-8f * h * h;

@@ -53,12 +53,19 @@ class Neighbours {
   std::vector<std::uint8_t> coincident_;
 };
 
-/// A search of runs of sorted particles for those near particle `self`, by vectors.
-/// @param runs   candidates; `self` is among them and is left out
+/// The particles that may be neighbours of those of one cell, in a row: copied once, they are read by vectors.
+struct Candidates {
+  std::vector<float> x, y, z;  ///< m; what fills the last vector is far away
+  std::vector<std::int32_t> index;
+  std::size_t count = 0;
+  void gather(const ParticleGrid& grid, const ParticleGrid::CellBox& box);
+};
+
+/// Finds the candidates near particle `self`, which is among them and is left out.
 /// @param index, r2  room for all candidates and 32 more
-/// @param least  the least squared distance found
-/// @return       how many, without what fills the last vector
-std::size_t near_in_runs(const ParticleGrid& grid, std::span<const ParticleGrid::Run> runs, std::size_t self, float h2,
-                         std::int32_t* index, float* r2, float& least);
+/// @param least  the least squared distance found, h2 at most
+/// @return       how many, at most Neighbours::kMost and without what fills the last vector
+std::size_t near_among(const Candidates& candidates, const ParticleGrid& grid, std::size_t self, float h2,
+                       std::int32_t* index, float* r2, float& least);
 
 }  // namespace meniscus
