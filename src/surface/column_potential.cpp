@@ -11,8 +11,8 @@ namespace {
 constexpr float kDry = -std::numeric_limits<float>::infinity();
 constexpr std::size_t kLanes = 8;    ///< sums side by side, for the compiler to vectorise
 constexpr float kStep = 0.25f;       ///< of the search from above, in reaches
-constexpr float kThrough = 0.5f;     ///< of the search for the lower end of a body of water, in reaches
-constexpr float kSlab = 3.0f;        ///< reaches of each column that are gathered at once
+constexpr float kThrough = 0.75f;    ///< of the search for the lower end of a body of water, in reaches
+constexpr float kSlab = 2.0f;        ///< reaches of each column that are gathered at once
 constexpr float kTolerance = 2e-4f;  ///< of a height, in reaches
 constexpr int kRefinements = 12;
 

@@ -65,7 +65,7 @@ Stretches not_positive(const Quadratic& q, double end) {
 }
 
 int cell_of(double place, int first, int last) {
-  return static_cast<int>(std::clamp(std::floor(place), static_cast<double>(first), static_cast<double>(last)));
+  return place > first ? std::min(static_cast<int>(std::min(place, 2e9)), last) : first;
 }
 
 }  // namespace
@@ -324,8 +324,19 @@ double HeightFieldBody::length(const FieldRay& ray, double t, double end) const 
     }
   };
   Policy policy{*this, ray};
-  if (!empty() && t <= end) traverse(ray, t, end, policy);
-  return policy.sum;
+  if (empty() || !(t <= end)) return 0;
+  // What lies deeper than the lowest place of the surface is water without looking.
+  const double lowest = static_cast<double>(levels_.back().blocks[0].low);
+  double deep_from = end, deep_to = end;
+  if (ray.z + end * ray.dz < lowest && ray.dz < 0) deep_from = std::max(t, (lowest - ray.z) / ray.dz);
+  if (ray.z + t * ray.dz < lowest) {
+    deep_from = t;
+    if (ray.dz > 0) deep_to = std::min(end, (lowest - ray.z) / ray.dz);
+  }
+  deep_from = std::min(deep_from, end);
+  if (t < deep_from) traverse(ray, t, deep_from, policy);
+  if (deep_to < end) traverse(ray, deep_to, end, policy);
+  return policy.sum + (deep_to - deep_from);
 }
 
 }  // namespace meniscus

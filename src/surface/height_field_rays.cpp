@@ -121,7 +121,16 @@ vec3 HeightFieldRays::normal(const Ray& ray, const FieldRay& in_field, const Fie
   }
   const double in_a = std::clamp(a, 0.0, static_cast<double>(body_.cells_a()));
   const double in_b = std::clamp(b, 0.0, static_cast<double>(body_.cells_b()));
-  vec3 normal = field_.at(static_cast<float>(in_a), static_cast<float>(in_b)).normal;
+  const int i = std::min(static_cast<int>(in_a), body_.cells_a() - 1);
+  const int j = std::min(static_cast<int>(in_b), body_.cells_b() - 1);
+  const float u = static_cast<float>(in_a - i), v = static_cast<float>(in_b - j);
+  vec3 normal;
+  if (body_.kind(i, j) == HeightFieldBody::full) {
+    const vec3 *near = field_.normal.row(j) + i, *far = field_.normal.row(j + 1) + i;
+    normal = (1 - v) * ((1 - u) * near[0] + u * near[1]) + v * ((1 - u) * far[0] + u * far[1]);
+  } else {
+    normal = field_.at(static_cast<float>(in_a), static_cast<float>(in_b)).normal;
+  }
   normal = unit(normal, axes.place(0.0f, 0.0f, 1.0f));
   // Interpolated normals may turn away from a ray that the surface itself faces: those are turned back to grazing.
   const float facing = glm::dot(normal, towards);
