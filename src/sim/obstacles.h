@@ -56,7 +56,10 @@ class Obstacles final : public Boundary {
   /// The water does not meet a wall faster than this, m/s.
   void limit_speed(float most) { most_speed_ = most; }
 
-  /// The nearest surface of one obstacle, world space, its inset left out. @return false: farther than reach
+  /// The water meets the surfaces of obstacles so far inside of them, m.
+  void set_skin(float skin) { skin_ = skin; }
+
+  /// The nearest surface of one obstacle, world space, its inset and skin left out. @return false: farther than reach
   bool nearest(std::size_t i, vec3 point, float reach, NearestSurface& nearest) const;
   /// The least distance from an obstacle that is there, or from walls and floor; infinity: farther than reach.
   float clearance(vec3 point, float reach) const;
@@ -78,6 +81,7 @@ class Obstacles final : public Boundary {
   Bounds tank_;
   Axis up_;
   float reach_;
+  float skin_ = 0;
   float most_speed_ = std::numeric_limits<float>::infinity();
   std::vector<Obstacle> obstacles_;
   ObstacleGrid grid_;

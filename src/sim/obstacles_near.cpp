@@ -52,10 +52,11 @@ void Obstacles::add_wall(const Obstacle& obstacle, int index, vec3 point, float 
   const vec3 way = point - obstacle.body.pose.position;
   if (glm::dot(way, way) > radius * radius) return;
   NearestSurface found;
+  const float inside = obstacle.inset + skin_;
   const vec3 own = glm::conjugate(obstacle.body.pose.rotation) * way;
-  if (!obstacle.shape->nearest_within(own, reach - obstacle.inset, found)) return;
+  if (!obstacle.shape->nearest_within(own, reach - inside, found)) return;
   Wall wall;
-  wall.distance = found.distance + obstacle.inset;
+  wall.distance = found.distance + inside;
   wall.normal = obstacle.body.pose.rotation * found.normal;
   wall.velocity = velocity_at(obstacle.body, point) + wall.normal * obstacle.growth;
   const float speed = glm::length(wall.velocity);
