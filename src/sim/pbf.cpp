@@ -11,11 +11,11 @@ namespace {
 /// Part of XSPH's blend that acts at walls: between slipping and sticking.
 constexpr float kWallFriction = 0.25f;
 /// The walls' own push, times h^2; 2 and more would not be stable.
-constexpr float kWallPush = 0.1f;
+constexpr float kWallPush = 0.2f;
 /// With a single iteration nothing dampens what it overshoots: energy grows.
 constexpr int kFewestIterations = 2;
 /// A particle moves no farther than this in a step, in smoothing lengths; what is faster is slowed.
-constexpr float kFarthest = 1.0f;
+constexpr float kFarthest = 2.0f;
 
 class PbfSolver final : public FluidSolver {
  public:

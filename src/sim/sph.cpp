@@ -10,6 +10,8 @@ namespace {
 
 /// Part of the viscosity that acts at walls: between slipping and sticking.
 constexpr float kWallFriction = 0.25f;
+/// The walls' own push over the square of the speed of sound; twice as much would not be stable in hard impacts.
+constexpr float kWallPush = 2.0f;
 /// Surface tension acts where the colour field falls by more than this over a smoothing length.
 constexpr float kSurfaceGradient = 0.2f;
 /// A particle moves no farther than this in a step, in smoothing lengths; what is faster is slowed.
@@ -101,7 +103,7 @@ class SphSolver final : public FluidSolver {
     for (std::size_t w = 0; w < walls.size(); ++w) {
       const Wall& wall = walls[w];
       const float push = pressure * shares.weight[w] * formulas::spiky_over_plane(wall.distance, h) +
-                         constants_.stiffness * wall_barrier(wall.distance, options_.spacing);
+                         kWallPush * constants_.stiffness * wall_barrier(wall.distance, options_.spacing);
       const float drag = kWallFriction * constants_.kinematic * state_.inverse_density[i] * shares.weight[w] *
                          formulas::viscosity_laplacian_beyond(wall.distance, h);
       const vec3 from_wall = push * wall.normal + drag * (wall.velocity - velocity);

@@ -14,7 +14,7 @@ namespace meniscus {
 /// Distance that no particle goes below, in spacings. Water at rest is held farther away by its pressure.
 constexpr float kContact_rel = 0.25f;
 /// Distance at which walls begin to push by themselves, in spacings.
-constexpr float kBarrier_rel = 0.7f;
+constexpr float kBarrier_rel = 0.55f;
 
 /// The walls around each particle that has any.
 class NearWalls {

@@ -32,6 +32,42 @@ class BoxBoundary : public Boundary {
   Bounds box_;
 };
 
+/// A ball without a tank, moving and turning.
+class BallBoundary : public Boundary {
+ public:
+  BallBoundary(vec3 centre, float radius, vec3 velocity, vec3 turn)
+      : centre_(centre), radius_(radius), velocity_(velocity), turn_(turn) {}
+  int walls_near(vec3 point, float reach, Wall (&walls)[kMostWalls]) const override {
+    const vec3 away = point - centre_;
+    const float distance = length(away) - radius_;
+    if (distance > reach) return 0;
+    const vec3 normal = normalize(away);
+    walls[0] = {distance, normal, velocity_ + cross(turn_, radius_ * normal), 0};
+    return 1;
+  }
+  std::size_t bodies() const override { return 1; }
+  vec3 centre(std::size_t) const override { return centre_; }
+
+ private:
+  vec3 centre_;
+  float radius_;
+  vec3 velocity_, turn_;
+};
+
+/// Sum of m v and of x cross m v, in double precision.
+struct Momentum {
+  glm::dvec3 linear{0.0}, angular{0.0};
+};
+inline Momentum momentum_of(const Fluid& fluid, double mass, vec3 centre) {
+  Momentum sum;
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    const glm::dvec3 v = mass * glm::dvec3(fluid.vx[i], fluid.vy[i], fluid.vz[i]);
+    sum.linear += v;
+    sum.angular += glm::cross(glm::dvec3(fluid.x[i], fluid.y[i], fluid.z[i]) - glm::dvec3(centre), v);
+  }
+  return sum;
+}
+
 /// A lattice of water within a box, half a spacing from its sides.
 inline Fluid block_of_water(Bounds box, float spacing) {
   Fluid fluid;
