@@ -41,6 +41,14 @@ ordered_json& object_in(ordered_json& scene, const char* name) {
   return scene[name];
 }
 
+/// A pattern as frames are found by: {} stands for a number of any width.
+std::string with_plain_braces(std::string pattern) {
+  const std::size_t begin = pattern.find("{:");
+  const std::size_t end = begin == std::string::npos ? begin : pattern.find('}', begin);
+  if (end != std::string::npos) pattern.replace(begin, end - begin + 1, "{}");
+  return pattern;
+}
+
 void move_paths(ordered_json& scene, const Moved& moved) {
   if (scene.contains("environment")) moved(scene["environment"], "hdr");
   if (scene.contains("camera")) moved(scene["camera"], "path");
@@ -69,7 +77,7 @@ std::string scene_of_written_frames(const std::string& scene_path, const std::st
   // The water comes from files, and what was taken from the simulation is said.
   ordered_json& water = scene["water"];
   water.erase("simulation");
-  water["frames"] = fs::absolute(output).lexically_normal().lexically_relative(to).string();
+  water["frames"] = with_plain_braces(fs::absolute(output).lexically_normal().lexically_relative(to).string());
   const std::size_t last = report.frames.empty() ? 0 : report.frames.size() - 1;
   if (report.frames.size() > 1 && !water.contains("last")) water["last"] = last;
   water["spacing"] = read.spacing.value_or(simulation.fluid.spacing);

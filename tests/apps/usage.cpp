@@ -79,12 +79,6 @@ TEST(WrongUsage, ExitsWithTwoAndOneLine) {
   EXPECT_FALSE(folder.has("out.png"));
 }
 
-TEST(Simulate, SaysThatItIsNotThere) {
-  const Outcome run = run_program({"simulate", "tank.json", "--steps", "3"});
-  EXPECT_EQ(run.exit_code, 1);
-  expect_one_error(run, "not available in this version");
-}
-
 TEST(FailedRun, ExitsWithOneAndNamesTheFile) {
   const Folder folder;
   folder.write_block("frame.xyz", 2);
