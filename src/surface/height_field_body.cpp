@@ -240,6 +240,7 @@ void HeightFieldBody::traverse(const FieldRay& ray, double t, double end, Policy
     if (!skipped && !policy.visit(i, j, t, to)) return;
     if (!(to < end)) return;
     // Across the nearer side into the next cell: counted, not computed, so that no cell is left out or met twice.
+    const int last_i = i, last_j = j;
     if (to_a <= to_b) {
       i = ray.da > 0 ? a1 : a0 - 1;
       j = cell_of(ray.b + to * ray.db, b0, b1 - 1);
@@ -249,7 +250,8 @@ void HeightFieldBody::traverse(const FieldRay& ray, double t, double end, Policy
     }
     if (i < 0 || j < 0 || i >= cells_a_ || j >= cells_b_) return;
     t = to;
-    if (skipped && level < top_level) ++level;
+    // Larger blocks only where one is left: within one that could not be skipped there is something near.
+    if (skipped && level < top_level && ((i ^ last_i) | (j ^ last_j)) >> (level + 1) != 0) ++level;
   }
 }
 
@@ -276,6 +278,10 @@ FieldChange HeightFieldBody::first(const FieldRay& ray, double t, double end, bo
       const Cell cell = body.cell(ray, i, j, from);
       if (inside) {
         if (cell.kind == dry) return true;
+        if (cell.kind == full) {
+          const double into = cell.above.first_negative(true);
+          return into < to - from ? finish(from, into, 0) : true;
+        }
         const Stretches wet = not_positive(cell.above, to - from), in = not_positive(cell.outside, to - from);
         for (int k = 0; k < wet.count; ++k)
           for (int l = 0; l < in.count; ++l)
@@ -316,7 +322,12 @@ double HeightFieldBody::length(const FieldRay& ray, double t, double end) const 
     bool visit(int i, int j, double from, double to) {
       const Cell cell = body.cell(ray, i, j, from);
       if (cell.kind == dry) return true;
-      const Stretches wet = not_positive(cell.above, to - from), in = not_positive(cell.outside, to - from);
+      const Stretches wet = not_positive(cell.above, to - from);
+      if (cell.kind == full) {
+        for (int k = 0; k < wet.count; ++k) sum += wet.to[k] - wet.from[k];
+        return true;
+      }
+      const Stretches in = not_positive(cell.outside, to - from);
       for (int k = 0; k < wet.count; ++k)
         for (int l = 0; l < in.count; ++l)
           sum += std::max(0.0, std::min(wet.to[k], in.to[l]) - std::max(wet.from[k], in.from[l]));

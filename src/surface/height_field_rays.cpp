@@ -27,9 +27,11 @@ HeightFieldRays::HeightFieldRays(HeightField field, bool sides)
 }
 
 FieldChange HeightFieldRays::enter(const FieldRay& ray, double from, double limit) const {
-  for (int i = 0; i < kMostChanges; ++i) {
-    const FieldStretch stretch = body_.clipped(ray, from, limit);
-    if (!stretch.found()) return {};
+  return enter(ray, body_.clipped(ray, from, limit), limit);
+}
+
+FieldChange HeightFieldRays::enter(const FieldRay& ray, FieldStretch stretch, double limit) const {
+  for (int i = 0; i < kMostChanges && stretch.found(); ++i) {
     FieldChange change = body_.first(ray, stretch.begin, stretch.end, true);
     if (!change.found()) return {};
     if (change.face == Face::start) change.face = stretch.first;
@@ -37,7 +39,7 @@ FieldChange HeightFieldRays::enter(const FieldRay& ray, double from, double limi
     // Not through a surface: the ray has been in the water, and may come back to it.
     const FieldChange out = leave(ray, change.t + nudge_, limit);
     if (!out.found()) return {};
-    from = out.t + nudge_;
+    stretch = body_.clipped(ray, out.t + nudge_, limit);
   }
   return {};
 }

@@ -16,6 +16,8 @@ class HeightFieldRays {
 
   /// The first place in [from, limit] where a ray comes into the water through what is surface.
   FieldChange enter(const FieldRay& ray, double from, double limit) const;
+  /// The same where `stretch` is what is clipped from the ray already.
+  FieldChange enter(const FieldRay& ray, FieldStretch stretch, double limit) const;
   /// The first place where a ray that is in the water at `from` comes out of it through what is surface.
   FieldChange leave(const FieldRay& ray, double from, double limit) const;
   /// As in Surface::crossings().

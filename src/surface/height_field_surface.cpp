@@ -126,7 +126,7 @@ class HeightFieldSurface final : public Surface {
     else if (view.projection == Projection::orthographic && rays_.body().inside(in_field, 0))
       change = {0, Face::start};  // the face that the view's plane cuts
     else
-      change = rays_.enter(in_field, stretch.begin, stretch.end);
+      change = rays_.enter(in_field, stretch, static_cast<double>(kInfinity));
     const double from = seen.eye_in_water || !change.found() ? stretch.begin : change.t;
     seen.thickness[i] = static_cast<float>(rays_.body().length(in_field, from, stretch.end));
     if (!change.found()) return;

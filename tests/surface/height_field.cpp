@@ -348,6 +348,12 @@ TEST(HeightFieldSurface, HasSidesOnlyWhereTheyAreWanted) {
   EXPECT_NEAR(found[1].distance, std::sqrt(1.25f), 1e-5f);
 }
 
+TEST(HeightFieldSurface, ShowsItsSidesUpright) {
+  const auto surface = make_height_field_surface(field_of(33, [](float, float) { return 0.5f; }));
+  const SurfaceBuffers seen = surface->see(perspective_view({-2, 0.3f, 1}, {0, 0.25f, 1}, {0, 1, 0}, 0.1f, 8, 8));
+  for (const vec3 normal : seen.normal) EXPECT_LT(degrees_between(normal, {-1, 0, 0}), 0.01);
+}
+
 TEST(HeightFieldOf, FindsAHeightFieldAgain) {
   const HeightField field = field_of(41, bumpy);
   const auto surface = make_height_field_surface(field);
