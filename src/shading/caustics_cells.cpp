@@ -10,8 +10,13 @@ namespace {
 /// Texels between samples at most, and samples along a side of a cell at most.
 constexpr float kApart = 0.55f;
 constexpr int kMostSamples = 48;
-/// Rows of the map that one piece of work fills.
-constexpr int kBandRows = 16;
+/// Rows of the map that one piece of work fills, and rows of cells in one list.
+constexpr int kBandRows = 32;
+constexpr std::size_t kListRows = 16;
+
+struct Place {
+  int x, y;
+};
 
 /// A cell; its dry corners have no light.
 struct Cell {
@@ -56,6 +61,7 @@ void add(const Cell& cell, float area, vec2 low, vec2 high, int top, int bottom,
   const int across = samples(cell.at[0], cell.at[1], cell.at[2], cell.at[3]);
   const int along = samples(cell.at[0], cell.at[2], cell.at[1], cell.at[3]);
   const float share = area / static_cast<float>(across * along);
+  const float first = static_cast<float>(top) - 1.51f, last = static_cast<float>(bottom) + 0.51f;
   const float per_across = 1.0f / static_cast<float>(across), per_along = 1.0f / static_cast<float>(along);
   for (int y = 0; y < along; ++y) {
     const float t = (static_cast<float>(y) + 0.5f) * per_along;
@@ -66,6 +72,7 @@ void add(const Cell& cell, float area, vec2 low, vec2 high, int top, int bottom,
       const float s = (static_cast<float>(x) + 0.5f) * per_across;
       const vec2 at = left + s * (right - left);
       if (!(at.x >= low.x && at.y >= low.y && at.x <= high.x && at.y <= high.y)) continue;
+      if (at.y < first || at.y > last) continue;
       const float flux = flux_left + s * (flux_right - flux_left);
       float wx[3], wy[3];
       const int i = spline(at.x, wx), j = spline(at.y, wy);
@@ -94,34 +101,37 @@ void gather_cells(const Image<LightPoint>& points, float cell_area, vec2 low, ve
   const vec2 edge{static_cast<float>(map.width()) + 1.0f, static_cast<float>(map.height()) + 1.0f};
   low = glm::max(low, vec2{-2.0f});
   high = glm::min(high, edge);
-  // The rows of the map that each row of cells reaches.
+  // Which cells reach which band of the map, in the cells' order: the same sums for any number of threads.
   const std::size_t rows = static_cast<std::size_t>(points.height() - 1);
-  std::vector<vec2> reach(rows);
-  parallel_for(rows, 8, [&](std::size_t begin, std::size_t end) {
-    Cell cell;
-    for (std::size_t r = begin; r < end; ++r) {
-      reach[r] = {1e30f, -1e30f};
-      const int y = static_cast<int>(r);
-      for (int x = 0; x + 1 < points.width(); ++x)
-        if (cell_of(points.row(y) + x, points.row(y + 1) + x, cell) && cell.left <= high.x && cell.right >= low.x)
-          reach[r] = {std::min(reach[r].x, cell.low), std::max(reach[r].y, cell.high)};
-    }
-  });
-  // Bands of the map, each from the cells in their order: the same sums for any number of threads.
+  const std::size_t lists = (rows + kListRows - 1) / kListRows;
   const std::size_t bands = static_cast<std::size_t>((map.height() + kBandRows - 1) / kBandRows);
+  std::vector<std::vector<Place>> reaching(lists * bands);
+  parallel_for(lists, 1, [&](std::size_t begin, std::size_t end) {
+    Cell cell;
+    for (std::size_t list = begin; list < end; ++list)
+      for (std::size_t r = list * kListRows; r < std::min(rows, (list + 1) * kListRows); ++r) {
+        const LightPoint *upper = points.row(static_cast<int>(r)), *lower = points.row(static_cast<int>(r) + 1);
+        for (int x = 0; x + 1 < points.width(); ++x) {
+          if (!cell_of(upper + x, lower + x, cell) || !(cell.left <= high.x && cell.right >= low.x)) continue;
+          // A sample counts a row and a half around it.
+          const float first = std::max(cell.low - 1.51f, 0.0f), last = std::min(cell.high + 1.51f, edge.y - 1.0f);
+          if (!(first <= last)) continue;
+          const std::size_t top = static_cast<std::size_t>(first) / kBandRows;
+          const std::size_t bottom = std::min(bands - 1, static_cast<std::size_t>(last) / kBandRows);
+          for (std::size_t band = top; band <= bottom; ++band)
+            reaching[list * bands + band].push_back({x, static_cast<int>(r)});
+        }
+      }
+  });
   parallel_for(bands, 1, [&](std::size_t begin, std::size_t end) {
     Cell cell;
     for (std::size_t band = begin; band < end; ++band) {
       const int top = static_cast<int>(band) * kBandRows, bottom = std::min(top + kBandRows, map.height());
-      const float first = static_cast<float>(top) - 1.51f, last = static_cast<float>(bottom) + 0.51f;
-      for (std::size_t r = 0; r < rows; ++r) {
-        if (!(reach[r].x <= last && reach[r].y >= first)) continue;
-        const int y = static_cast<int>(r);
-        for (int x = 0; x + 1 < points.width(); ++x)
-          if (cell_of(points.row(y) + x, points.row(y + 1) + x, cell) && cell.low <= last && cell.high >= first &&
-              cell.left <= high.x && cell.right >= low.x)
-            add(cell, cell_area, low, high, top, bottom, map);
-      }
+      for (std::size_t list = 0; list < lists; ++list)
+        for (const Place place : reaching[list * bands + band]) {
+          cell_of(points.row(place.y) + place.x, points.row(place.y + 1) + place.x, cell);
+          add(cell, cell_area, low, high, top, bottom, map);
+        }
     }
   });
 }

@@ -11,6 +11,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kLeastSize = 128, kLargestSize = 512;
+/// Mirrored light is faint: its maps are this many times as coarse, but no coarser than so many texels.
+constexpr int kWallPart = 2, kLeastWall = 64;
 /// Columns along the longer side of a field that is made here.
 constexpr int kColumns = 256;
 /// Rays along a side of the field that look for the floor.
@@ -25,6 +27,9 @@ int map_size(const FieldFrame& frame, const CausticsOptions& options) {
   if (options.map_size > 0) return options.map_size;
   return std::clamp(std::max(frame.width, frame.height) - 1, kLeastSize, kLargestSize);
 }
+
+/// Part of simple caustics in both superposed: more and dark places become black.
+constexpr float kSimplePart = 0.35f;
 
 }  // namespace
 
@@ -74,7 +79,7 @@ void superpose(PlaneMap& map, const PlaneMap& simple, float mean) {
       float& value = map.value(x, y);
       before += static_cast<double>(value);
       if (place.x >= simple.low.x && place.y >= simple.low.y && place.x <= high.x && place.y <= high.y)
-        value = std::max(0.0f, value + simple.at(place) - mean);
+        value = std::max(0.0f, value + kSimplePart * (simple.at(place) - mean));
       after += static_cast<double>(value);
     }
   if (!(after > 0)) return;
@@ -112,7 +117,7 @@ FieldLight field_light(const HeightField& field, const LightSource& sun, const S
   if (!options.on_walls || solids.empty() || !(solids.high[frame.up] > level->lowest())) return result;
   const StageTimer timer(times, "caustics walls");
   result.walls = std::make_shared<WallLight>(field, level, light, lit, FirstSolids(*level, scene, light.mirrored),
-                                             solids.high[frame.up], size);
+                                             solids.high[frame.up], std::max(size / kWallPart, kLeastWall));
   return result;
 }
 

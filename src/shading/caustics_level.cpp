@@ -9,6 +9,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Points this many steps beside the field, such as those of the walls around it, are looked up at its border.
 constexpr float kBeside = 1.0f;
+constexpr float kRounding = 0.01f;
 
 }  // namespace
 
@@ -69,10 +70,11 @@ float WaterLevel::depth(vec3 point) const {
 }
 
 float WaterLevel::cover(vec2 place) const {
-  const vec2 at = (place - frame_.low) / frame_.step;
-  if (!(at.x >= 0 && at.y >= 0 && at.x <= static_cast<float>(frame_.width - 1) &&
-        at.y <= static_cast<float>(frame_.height - 1)))
-    return 0;
+  vec2 at = (place - frame_.low) / frame_.step;
+  const vec2 last{static_cast<float>(frame_.width - 1), static_cast<float>(frame_.height - 1)};
+  // Walls stand on the border to rounding.
+  if (!(at.x >= -kRounding && at.y >= -kRounding && at.x <= last.x + kRounding && at.y <= last.y + kRounding)) return 0;
+  at = {std::clamp(at.x, 0.0f, last.x), std::clamp(at.y, 0.0f, last.y)};
   if (closed_) return 1;
   const int i = std::min(static_cast<int>(at.x), frame_.width - 2),
             j = std::min(static_cast<int>(at.y), frame_.height - 2);

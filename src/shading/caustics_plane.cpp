@@ -43,10 +43,10 @@ PlaneLight plane_light(const FieldFrame& frame, vec3 sun, vec3 strength, const M
 }
 
 float PlaneMap::at(vec2 place) const {
-  const vec2 p = (place - low) / texel;
-  if (!(p.x >= 0 && p.y >= 0 && p.x <= static_cast<float>(value.width() - 1) &&
-        p.y <= static_cast<float>(value.height() - 1)))
-    return 0;
+  vec2 p = (place - low) / texel;
+  const vec2 last{static_cast<float>(value.width() - 1), static_cast<float>(value.height() - 1)};
+  if (!(p.x >= -0.01f && p.y >= -0.01f && p.x <= last.x + 0.01f && p.y <= last.y + 0.01f)) return 0;
+  p = {std::clamp(p.x, 0.0f, last.x), std::clamp(p.y, 0.0f, last.y)};
   return between(value, p.x, p.y);
 }
 
