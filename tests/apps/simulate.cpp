@@ -8,10 +8,12 @@ namespace meniscus {
 namespace {
 
 const char* kScene =
-    "{\"water\": {\"simulation\": {\"solver\": \"pbf\", \"spacing\": 0.05, \"frames\": 3, \"tank\": [[0, 0, 0], "
+    "{\"water\": {\"extinction\": [0.5, 0.2, 0.1], \"simulation\": {\"solver\": \"pbf\", \"spacing\": 0.05, "
+    "\"frames\": 3, \"tank\": [[0, 0, 0], "
     "[0.6, 0.6, 0.4]], \"blocks\": [[[0, 0, 0], [0.3, 0.3, 0.4]]]}}, \"meshes\": [{\"name\": \"ball\", \"shape\": "
     "\"sphere\", \"scale\": 0.1, \"translate\": [0.45, 0.4, 0.2], \"obstacle\": {\"motion\": \"dynamic\"}}], "
-    "\"camera\": {\"eye\": [0.3, 0.5, 1.6], \"target\": [0.3, 0.2, 0.2]}, \"picture\": {\"size\": [48, 32]}}";
+    "\"ground\": {\"style\": \"plain\"}, \"lights\": {\"sun\": {\"azimuth\": 40, \"elevation\": 60}}, \"camera\": "
+    "{\"eye\": [0.3, 0.5, 1.6], \"target\": [0.3, 0.2, 0.2]}, \"picture\": {\"size\": [48, 32]}}";
 
 TEST(Simulate, WritesFramesThatAreReadAndDrawn) {
   const Folder folder;
@@ -29,7 +31,7 @@ TEST(Simulate, WritesFramesThatAreReadAndDrawn) {
   EXPECT_EQ(told.exit_code, 0) << told.err;
   EXPECT_NE(told.out.find("velocity"), std::string::npos);
 
-  // Drawn from files or while it is simulated, it is the same picture.
+  // Where nothing is left to guesses: drawn from files or while it is simulated, it is the same picture.
   const Outcome written = run_program({"render", folder / "frames/draw.json", "-o", folder / "a_{}.png"});
   ASSERT_EQ(written.exit_code, 0) << written.err;
   const Outcome live = run_program({"render", folder / "scene.json", "-o", folder / "b_{}.png", "--frames", "2:3"});
