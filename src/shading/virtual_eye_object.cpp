@@ -9,7 +9,7 @@ namespace meniscus {
 namespace {
 
 /// The scale that is allowed; outside of it the eye looks along the axis, and there is nothing to correct.
-constexpr float kLeastScale = 0.25f, kMostScale = 4.0f;
+constexpr float kLeastScale = 0.02f, kMostScale = 4.0f;
 
 /// The main axis' cut with the plane, or the foot of the box's centre where it is not cut.
 vec3 axis_cut(const ApproximatingPlane& plane, const WaterObject& object) {
