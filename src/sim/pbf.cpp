@@ -151,7 +151,13 @@ class PbfSolver final : public FluidSolver {
 
   void change(const Boundary& boundary, std::size_t i, float dt) {
     const vec3 before = place(i);
-    vec3 now = before + vec3{state_.dx[i], state_.dy[i], state_.dz[i]};
+    vec3 way{state_.dx[i], state_.dy[i], state_.dz[i]};
+    // Neighbours and walls move it not as far in all as walls were looked for: nothing leaves through a wall that it
+    // does not know.
+    const float farthest = 0.45f * constants_.h / static_cast<float>(std::max(options_.iterations, kFewestIterations)),
+                distance_now = length(way);
+    if (!(distance_now <= farthest)) way *= std::isfinite(distance_now) ? farthest / distance_now : 0.0f;
+    vec3 now = before + way;
     const std::span<const Wall> walls = walls_.of(i);
     if (!walls.empty()) {
       const float mass_rate = options_.rest_density * constants_.volume / dt;
@@ -159,16 +165,16 @@ class PbfSolver final : public FluidSolver {
       float distance[Boundary::kMostWalls];
       distances(walls, i, distance);
       const WallShares shares = wall_shares(walls, distance, constants_.h);
-      const auto push = [&](const Wall& wall, vec3 way) {
-        now += way;
-        if (wall.body >= 0) impulses_.add(i / Neighbours::kPiece, boundary, wall.body, -mass_rate * way, before);
+      const auto push = [&](const Wall& wall, vec3 out) {
+        now += out;
+        if (wall.body >= 0) impulses_.add(i / Neighbours::kPiece, boundary, wall.body, -mass_rate * out, before);
       };
       // The slope of the particle's own constraint, as for its neighbours, and the walls' own push. (To count lambda
       // twice, as if the water beyond the wall were pressed as well, feeds energy in: water at rest then boils.)
       for (std::size_t w = 0; w < walls.size(); ++w) {
         const float slope = constants_.solid * shares.weight[w] * formulas::spiky_over_plane(distance[w], constants_.h);
         const float own = kWallPush * constants_.h * constants_.h * wall_barrier(distance[w], options_.spacing);
-        push(walls[w], (own - state_.lambda[i] * slope) * walls[w].normal);
+        push(walls[w], std::min(own - state_.lambda[i] * slope, farthest) * walls[w].normal);
       }
       for (int pass = 0; pass < (walls.size() > 1 ? 3 : 1); ++pass)
         for (const Wall& wall : walls) {
