@@ -8,6 +8,8 @@
 
 namespace meniscus {
 
+struct Mesh;
+
 /// matrix = pose * scale, where the matrix turns, moves and scales along the body's own axes.
 struct BodyPlacement {
   Pose pose;
@@ -25,7 +27,6 @@ glm::mat4 matrix_of(const Pose& pose);
 /// else their triangles, welded.
 /// @param solid  its mesh
 /// @param name   "box", "sphere" or "cylinder"; else it is a mesh
-struct Mesh;
 ObstacleShape obstacle_shape_of(const Mesh& mesh, const std::string& name, const BodyPlacement& placement);
 
 }  // namespace meniscus

@@ -1,15 +1,12 @@
 /// A simulation with bodies that have roles in it: which body is which obstacle, and what time it is in which frame.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <glm/ext/matrix_double4x4.hpp>
 #include <glm/geometric.hpp>
 
 #include "meniscus/render.h"
 #include "render/body_placement.h"
-#include "render/nearest_name.h"
 #include "render/simulated_bodies.h"
 
 namespace meniscus {
