@@ -89,7 +89,11 @@ TEST(RefractionInImageSpace, IsNearlyARayWithASingleInterface) {
   const Scene scene = pool(Environment{EnvironmentOptions{}});
   const View view = perspective_view({0, 2, 3}, {0, 0, 0}, {0, 1, 0}, 0.5f, 160, 120);
   const SceneBuffers behind = scene.see(view);
-  OpticsInputs optics{{RefractionMethod::image_space, 8, 0, 1}, &behind, &water};
+  OpticsInputs optics;
+  optics.options.refraction = RefractionMethod::image_space;
+  optics.options.bounces = 1;
+  optics.behind = &behind;
+  optics.surface = &water;
   const Material material = material_preset("water", 1.0f);
   const SurfaceBuffers seen = water.see(view, {}, nullptr);
   const Image<vec3> a = shade(view, {}, seen, scene, material, optics);
@@ -126,17 +130,27 @@ TEST(Optics, RefusesOptionsOutOfRange) {
     return false;
   };
   using M = RefractionMethod;
-  EXPECT_TRUE(code({{M::thickness, 0}, nullptr, nullptr}));
-  EXPECT_TRUE(code({{M::thickness, 257}, nullptr, nullptr}));
-  EXPECT_TRUE(code({{M::thickness, 8, -1.0f}, nullptr, nullptr}));
-  EXPECT_TRUE(code({{M::thickness, 8, 0, 0}, nullptr, nullptr}));
-  EXPECT_TRUE(code({{M::thickness, 8, 0, 65}, nullptr, nullptr}));
+  const auto refused = [&](int iterations, float threshold, int bounces) {
+    OpticsInputs inputs;
+    inputs.options.iterations = iterations;
+    inputs.options.threshold = threshold;
+    inputs.options.bounces = bounces;
+    return code(inputs);
+  };
+  EXPECT_FALSE(refused(8, 0, 8));
+  EXPECT_TRUE(refused(0, 0, 8));
+  EXPECT_TRUE(refused(257, 0, 8));
+  EXPECT_TRUE(refused(8, -1.0f, 8));
+  EXPECT_TRUE(refused(8, 0, 0));
+  EXPECT_TRUE(refused(8, 0, 65));
+  EXPECT_TRUE(code({{M::virtual_eye}, nullptr, nullptr}));
   EXPECT_TRUE(code({{M::image_space}, nullptr, nullptr}));
   EXPECT_TRUE(code({{M::image_space}, &other, nullptr}));
   EXPECT_FALSE(code({{M::image_space}, &behind, nullptr}));
   EXPECT_EQ(refraction_method_of("ray_traced"), M::ray_traced);
   EXPECT_EQ(refraction_method_of("image_space"), M::image_space);
   EXPECT_EQ(refraction_method_of("thickness"), M::thickness);
+  EXPECT_EQ(refraction_method_of("virtual_eye"), M::virtual_eye);
   EXPECT_THROW(refraction_method_of("magic"), Error);
 }
 
