@@ -74,6 +74,8 @@ class WaterLight {
   virtual ~WaterLight() = default;
   /// @param normal  unit, of the lit side
   virtual Light at(vec3 point, vec3 normal) const = 0;
+  /// The same at many points that lie close together; lists of one length. By default one after the other.
+  virtual void at_each(std::span<const vec3> points, std::span<const vec3> normals, std::span<Light> lights) const;
 };
 
 /// A ray with a width: `width` m at its origin, growing by `spread` m per metre of its length.
@@ -209,6 +211,14 @@ class Scene {
                float limit = std::numeric_limits<float>::infinity()) const;
   /// Distance to the first solid along the ray; infinity if there is none.
   float distance(const Ray& ray, float from = 0) const;
+  /// hit(), radiance() and distance() for many rays at once, several times as fast where neighbours in the list are
+  /// neighbours in space. The same values to rounding, whatever else is in the list.
+  /// @param beam      of every ray
+  /// @param distance  as in distance(); may be empty
+  /// @throws Error    invalid_argument: lists of different lengths
+  void hits(std::span<const Ray> rays, Beam beam, std::span<SolidHit> hits) const;
+  void radiance(std::span<const Ray> rays, Beam beam, std::span<vec3> radiance, std::span<float> distance = {}) const;
+  void distances(std::span<const Ray> rays, std::span<float> distance) const;
   /// Whether a solid stands between two points; their own surfaces do not count.
   bool blocked(vec3 from, vec3 to) const;
   /// Whether a solid stands between a point and the environment in this direction (unit).

@@ -99,26 +99,26 @@ PlacedSolids::PlacedSolids(std::vector<PlacedSolid> placed) : scene_(make_embree
   rtcCommitScene(scene_.get());
   check_embree();
   const vec3 size = glm::max(glm::abs(bounds_.low), glm::abs(bounds_.high));
-  grown_ = bounds_.grown(1e-5f * std::max({size.x, size.y, size.z}));
-  centre_ = grown_.centre();
-  half_diagonal_ = 0.5f * glm::length(grown_.extent());
+  box_.box = bounds_.grown(1e-5f * std::max({size.x, size.y, size.z}));
+  box_.centre = box_.box.centre();
+  box_.half_diagonal = 0.5f * glm::length(box_.box.extent());
 }
 
 SolidHit PlacedSolids::hit(const Ray& ray, Beam beam, float from, float limit) const {
-  if (!meets(grown_, ray, from, limit)) return {};
+  if (!meets(box_.box, ray, from, limit)) return {};
   const RTCRayHit found = traced(scene_.get(), ray, from, limit);
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   return described(ray, beam, found.ray.tfar, found.hit.instID[0], found.hit.primID, found.hit.u, found.hit.v);
 }
 
 float PlacedSolids::distance(const Ray& ray, float from, float limit) const {
-  if (!meets(grown_, ray, from, limit)) return kInfinity;
+  if (!meets(box_.box, ray, from, limit)) return kInfinity;
   const RTCRayHit found = traced(scene_.get(), ray, from, limit);
   return found.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity : found.ray.tfar;
 }
 
 bool PlacedSolids::blocks(const Ray& ray, float from, float limit) const {
-  if (!meets(grown_, ray, from, limit)) return false;
+  if (!meets(box_.box, ray, from, limit)) return false;
   RTCRay r = embree_ray(ray, from, limit);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -145,7 +145,6 @@ int PlacedSolids::passing(const Ray (&rays)[4]) const {
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded4(valid, scene_.get(), &context, &r);
   int bits = 0;
   for (int k = 0; k < 4; ++k) bits |= r.tfar[k] < 0 ? 0 : 1 << k;
@@ -154,8 +153,8 @@ int PlacedSolids::passing(const Ray (&rays)[4]) const {
 
 bool PlacedSolids::near(const Ray& ray, float width, float spread) const {
   // Nothing of the box is farther than its centre and half of its diagonal.
-  const float farthest = glm::length(centre_ - ray.origin) + half_diagonal_;
-  return meets(grown_.grown(width + spread * farthest), ray, 0, kInfinity);
+  const float farthest = glm::length(box_.centre - ray.origin) + box_.half_diagonal;
+  return meets(box_.box.grown(width + spread * farthest), ray, 0, kInfinity);
 }
 
 SolidHit PlacedSolids::described(const Ray& ray, Beam beam, float distance, std::size_t place, std::size_t triangle,

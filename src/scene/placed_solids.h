@@ -3,6 +3,7 @@
 
 #include <glm/mat3x3.hpp>
 
+#include "scene/planes.h"
 #include "scene/solid.h"
 
 namespace meniscus {
@@ -20,8 +21,15 @@ class PlacedSolids {
   bool blocks(const Ray& ray, float from, float limit) const;
   /// Bits of four rays that meet none, the first ray's the lowest; the rays have no end.
   int passing(const Ray (&rays)[4]) const;
+  /// The same for up to sixteen rays.
+  unsigned passing(std::span<const Ray> rays) const;
+  /// The first triangles along the rays that are said to be near, where they come before what is met so far.
+  /// @param described_too  false: distance and face only
+  void hits(const RayBlock& rays, Beam beam, bool described_too, BlockHits& hits) const;
   /// Whether rays beside this one, as far as width + spread * their length, may meet any.
   bool near(const Ray& ray, float width, float spread) const;
+  /// Grown by more than rounding.
+  const SolidsBox& box() const { return box_; }
 
  private:
   struct Place {
@@ -37,9 +45,7 @@ class PlacedSolids {
   std::vector<Place> places_;
   EmbreeScene scene_;
   Bounds bounds_;
-  Bounds grown_;             ///< by more than rounding
-  vec3 centre_{0.0f};        ///< of it
-  float half_diagonal_ = 0;  ///< of it, m
+  SolidsBox box_;  ///< grown by more than rounding
 };
 
 }  // namespace meniscus

@@ -36,7 +36,8 @@ void Scene::set_solids(std::vector<PlacedSolid> solids) {
   auto changed = std::make_shared<Parts>(*parts_);
   changed->placed = solids;
   changed->solids = solids.empty() ? nullptr : std::make_shared<const PlacedSolids>(std::move(solids));
-  changed->grain = changed->solids ? 1e-5f * largest(changed->solids->bounds().extent()) : 0.0f;
+  changed->grain = changed->sun_path.grain =
+      changed->solids ? 1e-5f * largest(changed->solids->bounds().extent()) : 0.0f;
   parts_ = std::move(changed);
 }
 
@@ -44,6 +45,9 @@ void Scene::set_tank(const Tank& tank) {
   auto changed = std::make_shared<Parts>(*parts_);
   changed->tank = tank;
   changed->body = tank.style == TankStyle::none ? nullptr : std::make_shared<const TankBody>(tank);
+  for (int axis = 0; axis < 3; ++axis)
+    changed->sun_path.through_pane[axis] =
+        changed->body ? changed->body->pane(std::abs(changed->sun_path.direction[axis])).transmittance : vec3{1.0f};
   parts_ = std::move(changed);
 }
 

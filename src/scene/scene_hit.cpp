@@ -7,16 +7,13 @@
 
 #include "scene/chequer.h"
 #include "scene/footprint.h"
+#include "scene/planes.h"
 #include "scene/scene_parts.h"
 
 namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Sine of the angle under the horizon in which even an endless ground melts into the haze.
-constexpr float kHorizonHaze = 0.012f;
-/// A tank's floor that lies on the ground is seen, not the ground: it wins within this fraction of the distance.
-constexpr float kTie = 1e-4f;
 
 float smooth(float t) {
   t = std::clamp(t, 0.0f, 1.0f);
@@ -77,14 +74,17 @@ bool Scene::Parts::blocks(const Ray& ray, float from, float limit) const {
 float Scene::ground_distance(const Ray& ray) const { return parts_->ground_distance(ray); }
 
 SolidHit Scene::hit(const Ray& ray, Beam beam, float from, float limit) const {
-  const Parts& parts = *parts_;
+  return parts_->hit(ray, beam, from, limit);
+}
+
+SolidHit Scene::Parts::hit(const Ray& ray, Beam beam, float from, float limit) const {
   SolidHit nearest;
-  if (parts.body) nearest = parts.body->hit(ray, beam, from, limit);
-  const float ground = parts.ground_distance(ray);
+  if (body) nearest = body->hit(ray, beam, from, limit);
+  const float ground = ground_distance(ray);
   if (ground < kInfinity && ground * (1.0f + kTie) < nearest.distance)
-    if (const SolidHit hit = parts.ground_hit(ray, ground, beam, from, limit); hit.found()) nearest = hit;
-  if (parts.solids) {
-    const SolidHit hit = parts.solids->hit(ray, beam, from, std::min(limit, nearest.distance));
+    if (const SolidHit hit = ground_hit(ray, ground, beam, from, limit); hit.found()) nearest = hit;
+  if (solids) {
+    const SolidHit hit = solids->hit(ray, beam, from, std::min(limit, nearest.distance));
     if (hit.found()) nearest = hit;
   }
   return nearest;

@@ -10,6 +10,7 @@
 
 #include "meniscus/formulas.h"
 #include "scene/direction_map.h"
+#include "scene/facing.h"
 #include "scene/scene_parts.h"
 
 namespace meniscus {
@@ -20,19 +21,6 @@ constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
 /// Half of the width of the sun's disc, radians.
 constexpr float kSunRadius = 0.00465f;
 constexpr float kBrightestGlare = 200.0f;
-
-/// Cosine of light on a face with an interpolated normal, that goes to zero smoothly where the flat face itself turns
-/// away, so that neither light leaks through nor facets show.                                          [Chiang2019]
-float facing(vec3 normal, vec3 face_normal, vec3 towards_light) {
-  const float cos_normal = glm::dot(normal, towards_light);
-  if (!(cos_normal > 0)) return 0;
-  const float cos_face = glm::dot(face_normal, towards_light);
-  if (!(cos_face > 0)) return 0;
-  const float agree = glm::dot(normal, face_normal);
-  if (agree > 0.99999f) return cos_normal;
-  const float g = std::min(1.0f, cos_face / (cos_normal * std::max(agree, 1e-4f)));
-  return cos_normal * (g + g * g - g * g * g);
-}
 
 /// Points of the unit disc, the first four on its edge.
 constexpr std::array<vec2, 16> kDisc{{{0.92f, 0.38f},
@@ -61,6 +49,21 @@ void Scene::Parts::aim_at_sun() {
     sun_offsets[i] = kDisc[i].x * frame.east + kDisc[i].y * frame.north;
     sun_points[i] = glm::normalize(sun + kSunRadius * sun_offsets[i]);
   }
+  sun_path.direction = sun;
+  sun_path.cone = 2.0f * kSunRadius;
+  for (int face = kTankFace; face <= kGroundFace; ++face) {
+    const auto i = static_cast<std::size_t>(face);
+    plane_normals[i] = normal_of(face);
+    plane_skies[i] = environment.irradiance(plane_normals[i]);
+    plane_cosines[i] = facing(plane_normals[i], plane_normals[i], sun);
+  }
+}
+
+Ray Scene::Parts::sun_ray(vec3 start, vec3 face_normal, float footprint, std::size_t number) const {
+  // Starting points stay in the face, where they do not fall under it.
+  vec3 beside = (0.5f * footprint) * sun_offsets[number];
+  beside -= glm::dot(beside, face_normal) * face_normal;
+  return {start + beside, sun_points[number]};
 }
 
 vec3 Scene::Parts::sun_seen(vec3 point, vec3 face_normal, float footprint) const {
@@ -75,12 +78,7 @@ vec3 Scene::Parts::sun_seen(vec3 point, vec3 face_normal, float footprint) const
   int seen = 0;
   for (std::size_t first = 0; first < sun_points.size(); first += 4) {
     Ray rays[4];
-    for (std::size_t k = 0; k < 4; ++k) {
-      // Starting points stay in the face, where they do not fall under it.
-      vec3 beside = (0.5f * footprint) * sun_offsets[first + k];
-      beside -= glm::dot(beside, face_normal) * face_normal;
-      rays[k] = {start + beside, sun_points[first + k]};
-    }
+    for (std::size_t k = 0; k < 4; ++k) rays[k] = sun_ray(start, face_normal, footprint, first + k);
     seen += std::popcount(static_cast<unsigned>(solids->passing(rays)));
     if (first == 0 && seen == 0) return vec3{0.0f};
     if (first == 0 && seen == 4) return light;
@@ -97,12 +95,18 @@ vec3 Scene::Parts::irradiance(vec3 point, vec3 normal, vec3 face_normal, float f
   const vec3 sun = light.sun * environment.sun_irradiance() * sun_facing;
   if (sun != vec3{0.0f}) sum += (solids || body) ? sun * sun_seen(point, face_normal, footprint) : sun;
 
+  if (!lamps.empty()) sum += lamp_irradiance(point, normal, face_normal, light.lamps);
+  return sum;
+}
+
+vec3 Scene::Parts::lamp_irradiance(vec3 point, vec3 normal, vec3 face_normal, vec3 fraction) const {
+  vec3 sum{0.0f};
   for (const PointLight& lamp : lamps) {
     const vec3 way = lamp.position - point;
     const float length = glm::length(way);
     if (!(length > 0)) continue;
     const vec3 towards = way / length;
-    vec3 arrives = light.lamps * lamp.intensity * (facing(normal, face_normal, towards) / (length * length));
+    vec3 arrives = fraction * lamp.intensity * (facing(normal, face_normal, towards) / (length * length));
     if (arrives == vec3{0.0f}) continue;
     const Ray ray{point + clearance(point) * face_normal, towards};
     if (body) arrives *= body->light_transmittance(ray, length);
@@ -116,11 +120,12 @@ vec3 Scene::irradiance(vec3 point, vec3 normal, vec3 face_normal) const {
   return parts_->irradiance(point, normal, face_normal, 0.0f);
 }
 
-vec3 Scene::lit(const SolidHit& hit, const Ray& ray, Beam beam) const {
-  const Parts& parts = *parts_;
+vec3 Scene::lit(const SolidHit& hit, const Ray& ray, Beam beam) const { return parts_->lit(hit, ray, beam); }
+
+vec3 Scene::Parts::lit(const SolidHit& hit, const Ray& ray, Beam beam) const {
   const float width = beam.width + beam.spread * hit.distance;
   const vec3 point = ray.origin + hit.distance * ray.direction;
-  const vec3 diffuse = hit.albedo * kPerPi * parts.irradiance(point, hit.normal, hit.face_normal, width);
+  const vec3 diffuse = hit.albedo * kPerPi * irradiance(point, hit.normal, hit.face_normal, width);
   if (hit.roughness >= 1.0f) return diffuse;
 
   // A clear coat: its mirror image of what surrounds the solid, which shows no coats itself, and of the sun.
@@ -128,22 +133,22 @@ vec3 Scene::lit(const SolidHit& hit, const Ray& ray, Beam beam) const {
   vec3 direction = formulas::mirrored(ray.direction, hit.normal);
   const float under = glm::dot(direction, hit.face_normal);
   if (under < 0.01f) direction = glm::normalize(direction + (0.01f - under) * hit.face_normal);
-  const Ray mirror{point + parts.clearance(point) * hit.face_normal, direction};
+  const Ray mirror{point + clearance(point) * hit.face_normal, direction};
   const float sigma = 0.8f * hit.roughness * hit.roughness;
   const Beam widened{width, beam.spread + 2.0f * sigma};
-  const SolidHit seen = this->hit(mirror, widened);
+  const SolidHit seen = this->hit(mirror, widened, 0, kInfinity);
   vec3 image{0.0f};
-  if (seen.presence < 1.0f || !seen.found()) image = parts.environment.radiance(direction, hit.roughness);
+  if (seen.presence < 1.0f || !seen.found()) image = environment.radiance(direction, hit.roughness);
   if (seen.found()) {
-    const vec3 body = seen.albedo * kPerPi *
-                      parts.irradiance(mirror.origin + seen.distance * direction, seen.normal, seen.face_normal, width);
-    image = glm::mix(image, body, seen.presence);
+    const vec3 shown = seen.albedo * kPerPi *
+                       irradiance(mirror.origin + seen.distance * direction, seen.normal, seen.face_normal, width);
+    image = glm::mix(image, shown, seen.presence);
   }
-  vec3 glare = parts.environment.sun_glare(direction, sigma * sigma);
+  vec3 glare = environment.sun_glare(direction, sigma * sigma);
   if (glare != vec3{0.0f}) {
-    if (parts.water_light) glare *= parts.water_light->at(point, hit.normal).sun;
-    if (facing(hit.normal, hit.face_normal, parts.environment.sun_direction()) > 0)
-      image += glm::min(glare * parts.sun_seen(point, hit.face_normal, width), vec3{kBrightestGlare});
+    if (water_light) glare *= water_light->at(point, hit.normal).sun;
+    if (facing(hit.normal, hit.face_normal, environment.sun_direction()) > 0)
+      image += glm::min(glare * sun_seen(point, hit.face_normal, width), vec3{kBrightestGlare});
   }
   // Rough coats lose contrast and with it their mirror image, until none is left.
   const float share = reflectance * (1.0f - hit.roughness);

@@ -5,6 +5,7 @@
 
 #include "meniscus/scene.h"
 #include "scene/placed_solids.h"
+#include "scene/planes.h"
 #include "scene/tank_body.h"
 
 namespace meniscus {
@@ -23,8 +24,16 @@ struct Scene::Parts {
   /// Towards points of the sun's disc, and where these are in a disc of radius one around the sun's direction.
   std::array<vec3, 16> sun_points{}, sun_offsets{};
 
-  /// Fills the places on the sun.
+  SunPath sun_path{};
+  /// By Face, but for solids: normals, cosines of the sun's light, irradiance of the sky.
+  std::array<vec3, 8> plane_normals{}, plane_skies{};
+  std::array<float, 8> plane_cosines{};
+
+  /// Fills the places on the sun and what planes get of sun and sky.
   void aim_at_sun();
+  /// See Scene::hit(), Scene::lit().
+  SolidHit hit(const Ray& ray, Beam beam, float from, float limit) const;
+  vec3 lit(const SolidHit& hit, const Ray& ray, Beam beam) const;
   /// Distance to the visible plane, not the haze in front of it.
   float ground_distance(const Ray& ray) const;
   /// The ground alone. @param distance  ground_distance(ray)
@@ -36,8 +45,24 @@ struct Scene::Parts {
   bool blocks(const Ray& ray, float from, float limit) const;
   /// Fraction of the sun's disc that is seen from a point, at what is left of its light behind glass panes.
   vec3 sun_seen(vec3 point, vec3 face_normal, float footprint) const;
+  /// One of 16 rays to the sun; `start` is a clearance() above the point. They start beside each other in the face.
+  Ray sun_ray(vec3 start, vec3 face_normal, float footprint, std::size_t number) const;
+  /// Irradiance from the point lights of which `fraction` passes the water.
+  vec3 lamp_irradiance(vec3 point, vec3 normal, vec3 face_normal, vec3 fraction) const;
   /// Irradiance from everything; `footprint` m is the width over which shadows' edges are averaged.
   vec3 irradiance(vec3 point, vec3 normal, vec3 face_normal, float footprint) const;
+
+  // The same for the rays of a block.
+  /// @param distances_only  as in Scene::distance(): without albedos
+  void meet(const RayBlock& rays, Beam beam, bool distances_only, BlockHits& hits) const;
+  SolidHit hit_of(const BlockHits& hits, int lane) const;
+  vec3 normal_of(int face) const;
+  /// Radiance along each ray: what is met in its light, or the environment.
+  void shade(const RayBlock& rays, Beam beam, const BlockHits& hits, vec3* radiance) const;
+  /// Takes away what solids keep of the sun's light. @param cosines  of that light, one a point; only > 0 are looked at
+  void sun_past_solids(const float* cosines, int count, BlockPoints& points) const;
+  /// Draws the rays of some pixels.
+  void see(const RayBlock& rays, Beam beam, const std::size_t* pixels, SceneBuffers& seen) const;
 };
 
 }  // namespace meniscus

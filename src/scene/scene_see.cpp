@@ -1,5 +1,5 @@
 // The scene as a view.
-#include <glm/common.hpp>
+#include <algorithm>
 #include <limits>
 
 #include "scene/scene_parts.h"
@@ -15,6 +15,22 @@ Beam beam_of(const View& view) {
 
 }  // namespace
 
+void Scene::Parts::see(const RayBlock& rays, Beam beam, const std::size_t* pixels, SceneBuffers& seen) const {
+  BlockHits hits;
+  vec3 radiance[RayBlock::kRays];
+  meet(rays, beam, false, hits);
+  shade(rays, beam, hits, radiance);
+  for (int lane = 0; lane < rays.count; ++lane) {
+    const std::size_t i = pixels[lane];
+    seen.radiance[i] = radiance[lane];
+    const int face = hits.face[lane];
+    if (face == kNothing) continue;
+    seen.depth[i] = hits.distance[lane];
+    seen.normal[i] = face == kSolidFace ? hits.solids[lane].normal : plane_normals[static_cast<std::size_t>(face)];
+    seen.albedo[i] = {hits.albedo[0][lane], hits.albedo[1][lane], hits.albedo[2][lane]};
+  }
+}
+
 SceneBuffers Scene::see(const View& view, std::span<const vec2> points, StageTimes* times) const {
   const StageTimer timer(times, "scene");
   const int width = points.empty() ? view.width : static_cast<int>(points.size());
@@ -22,35 +38,43 @@ SceneBuffers Scene::see(const View& view, std::span<const vec2> points, StageTim
   SceneBuffers seen{Image<vec3>(width, height), Image<float>(width, height, std::numeric_limits<float>::infinity()),
                     Image<vec3>(width, height), Image<vec3>(width, height)};
   const Beam beam = beam_of(view);
-  const auto draw = [&](std::size_t i, vec2 point) {
-    const Ray ray = view.ray(point);
-    const SolidHit found = hit(ray, beam);
-    if (!found.found() || found.presence < 1.0f) seen.radiance[i] = environment().radiance(ray.direction);
-    if (!found.found()) return;
-    seen.radiance[i] = found.presence < 1.0f ? glm::mix(seen.radiance[i], lit(found, ray, beam), found.presence)
-                                             : lit(found, ray, beam);
-    seen.depth[i] = found.distance;
-    seen.normal[i] = found.normal;
-    seen.albedo[i] = found.albedo;
-  };
+  constexpr int kRays = RayBlock::kRays;
   if (!points.empty()) {
-    parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) draw(i, points[i]);
+    parallel_for(points.size(), 16 * kRays, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t first = begin; first < end; first += kRays) {
+        RayBlock rays;
+        std::size_t pixels[kRays];
+        const auto count = static_cast<int>(std::min<std::size_t>(kRays, end - first));
+        for (int lane = 0; lane < count; ++lane) {
+          pixels[lane] = first + static_cast<std::size_t>(lane);
+          rays.set(lane, view.ray(points[pixels[lane]]));
+        }
+        rays.close(count);
+        parts_->see(rays, beam, pixels, seen);
+      }
     });
     return seen;
   }
   // Square tiles: their rays stay close together.
-  constexpr int kTile = 16;
+  constexpr int kTile = 8;
+  static_assert(kTile * kTile == kRays);
   const int across = (width + kTile - 1) / kTile, down = (height + kTile - 1) / kTile;
-  parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 4,
+  parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 16,
                [&](std::size_t begin, std::size_t end) {
                  for (std::size_t tile = begin; tile < end; ++tile) {
                    const int x0 = static_cast<int>(tile % static_cast<std::size_t>(across)) * kTile;
                    const int y0 = static_cast<int>(tile / static_cast<std::size_t>(across)) * kTile;
+                   RayBlock rays;
+                   std::size_t pixels[kRays];
+                   int count = 0;
                    for (int y = y0; y < std::min(y0 + kTile, height); ++y)
-                     for (int x = x0; x < std::min(x0 + kTile, width); ++x)
-                       draw(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x),
-                            {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
+                     for (int x = x0; x < std::min(x0 + kTile, width); ++x) {
+                       pixels[count] =
+                           static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+                       rays.set(count++, view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
+                     }
+                   rays.close(count);
+                   parts_->see(rays, beam, pixels, seen);
                  }
                });
   return seen;

@@ -15,15 +15,9 @@ namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kGlass = 1.5f;
-/// Width of the joints in tiles.
-constexpr float kJoint = 0.05f;
-/// Planes are this much larger than they are, in extents of the tank, so that no ray slips through a corner.
+/// overlap() and bulge() in diagonals of the tank.
 constexpr float kOverlap = 2e-6f;
-/// How far water may bulge beyond a wall, in diagonals of the tank.
 constexpr float kBulge = 0.015f;
-/// What is seen of the edges of glass panes: light that was led there, greenish.
-const vec3 kEdgeColour{0.62f, 0.80f, 0.74f};
 
 bool in_range(vec3 v, float high) {
   return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x <= high && v.y <= high && v.z <= high;
@@ -77,6 +71,8 @@ TankBody::TankBody(const Tank& tank) : tank_(tank) {
   outside_ = tank.inside.grown(tank_.thickness);
   outside_.low[up_] = tank.inside.low[up_];
   outside_.high[up_] = tank.inside.high[up_];
+  overlap_ = kOverlap * glm::length(outside_.extent());
+  bulge_ = kBulge * glm::length(extent);
 
   // Bars stand outside of the space for the water and on the height of its floor and its upper edge.
   const float thick = std::min(tank_.thickness, 0.5f * extent[up_]);
@@ -97,9 +93,8 @@ TankBody::TankBody(const Tank& tank) : tank_(tank) {
 
 bool TankBody::opens_ground(vec3 point) const {
   if (tank_.style != TankStyle::tiled) return false;
-  const float margin = kOverlap * glm::length(outside_.extent());
   return within(tank_.inside, point, side_, 0) && within(tank_.inside, point, other_, 0) &&
-         within(tank_.inside, point, up_, margin);
+         within(tank_.inside, point, up_, overlap_);
 }
 
 SolidHit TankBody::hit(const Ray& ray, Beam beam, float from, float limit) const {
@@ -117,7 +112,6 @@ vec3 TankBody::tiles(vec3 point, int axis, const Ray& ray, float width) const {
 
 SolidHit TankBody::tiled_hit(const Ray& ray, Beam beam, float from, float limit) const {
   const Bounds& inside = tank_.inside;
-  const float overlap = kOverlap * glm::length(outside_.extent());
   SolidHit hit;
   int hit_axis = -1;
   // Outwards through each pair of walls, and down through the floor.
@@ -127,7 +121,7 @@ SolidHit TankBody::tiled_hit(const Ray& ray, Beam beam, float from, float limit)
     const float distance = plane_distance(ray, axis, along > 0 ? inside.high[axis] : inside.low[axis]);
     if (!(distance >= from && distance <= limit && distance < hit.distance)) continue;
     const vec3 point = ray.origin + distance * ray.direction;
-    if (!within(inside, point, (axis + 1) % 3, overlap) || !within(inside, point, (axis + 2) % 3, overlap)) continue;
+    if (!within(inside, point, (axis + 1) % 3, overlap_) || !within(inside, point, (axis + 2) % 3, overlap_)) continue;
     hit.distance = distance;
     hit.normal = unit(axis, along > 0 ? -1.0f : 1.0f);
     hit_axis = axis;
@@ -192,9 +186,17 @@ SolidHit TankBody::bar_hit(const Ray& ray, float from, float limit) const {
   }
   hit.face_normal = hit.normal;
   hit.albedo = kEdgeColour;
-  hit.roughness = 0.1f;
+  hit.roughness = kEdgeRoughness;
   hit.ior = kGlass;
   return hit;
+}
+
+TankBody::Pane TankBody::pane(float cos_in) const {
+  // Both faces with all reflections between them, and the way through the glass.
+  const formulas::Interface face = formulas::fresnel(cos_in, kGlass);
+  const float both = 2.0f * face.reflectance / (1.0f + face.reflectance);
+  const vec3 tint = glm::pow(tank_.glass_tint, vec3{1.0f / std::max(face.cos_t, 0.1f)});
+  return {0.0f, vec3{0.0f}, both, (1.0f - both) * tint};
 }
 
 TankBody::Panes TankBody::panes(const Ray& ray, float limit) const {
@@ -209,11 +211,9 @@ TankBody::Panes TankBody::panes(const Ray& ray, float limit) const {
       if (!(distance < kInfinity && distance < limit * (1.0f - 1e-5f))) continue;
       const vec3 point = ray.origin + distance * ray.direction;
       if (!within(outside_, point, (axis + 1) % 3, 0) || !within(outside_, point, (axis + 2) % 3, 0)) continue;
-      // Both faces with all reflections between them, and the way through the glass.
-      const formulas::Interface face = formulas::fresnel(std::abs(along), kGlass);
-      const float both = 2.0f * face.reflectance / (1.0f + face.reflectance);
-      const vec3 tint = glm::pow(tank_.glass_tint, vec3{1.0f / std::max(face.cos_t, 0.1f)});
-      Pane pane{distance, unit(axis, along > 0 ? -1.0f : 1.0f), both, (1.0f - both) * tint};
+      Pane pane = this->pane(std::abs(along));
+      pane.distance = distance;
+      pane.normal = unit(axis, along > 0 ? -1.0f : 1.0f);
       int at = result.count++;
       for (; at > 0 && result.panes[static_cast<std::size_t>(at - 1)].distance > distance; --at)
         result.panes[static_cast<std::size_t>(at)] = result.panes[static_cast<std::size_t>(at - 1)];
@@ -225,8 +225,7 @@ TankBody::Panes TankBody::panes(const Ray& ray, float limit) const {
 bool TankBody::keeps_light_out(const Ray& ray, float from, float limit) const {
   if (tank_.style != TankStyle::tiled) return false;
   const Bounds& inside = tank_.inside;
-  const float bulge = kBulge * glm::length(inside.extent());
-  const bool above_floor = ray.origin[up_] > inside.low[up_] + 0.02f * bulge && ray.origin[up_] < inside.high[up_];
+  const bool above_floor = ray.origin[up_] > inside.low[up_] + 0.02f * bulge_ && ray.origin[up_] < inside.high[up_];
   for (int axis = 0; axis < 3; ++axis) {
     const float along = ray.direction[axis];
     if (along == 0) continue;
@@ -234,10 +233,10 @@ bool TankBody::keeps_light_out(const Ray& ray, float from, float limit) const {
       if (axis == up_ && high) continue;
       const float distance = ((high ? inside.high[axis] : inside.low[axis]) - ray.origin[axis]) / along;
       const bool outwards = (along > 0) == high;
-      const float nearest = outwards && axis != up_ && above_floor ? -bulge / std::abs(along) : from;
+      const float nearest = outwards && axis != up_ && above_floor ? -bulge_ / std::abs(along) : from;
       if (!(distance >= nearest && distance <= limit)) continue;
       const vec3 point = ray.origin + std::max(distance, 0.0f) * ray.direction;
-      if (within(inside, point, (axis + 1) % 3, bulge) && within(inside, point, (axis + 2) % 3, bulge) &&
+      if (within(inside, point, (axis + 1) % 3, bulge_) && within(inside, point, (axis + 2) % 3, bulge_) &&
           point[up_] < inside.high[up_])
         return true;
     }

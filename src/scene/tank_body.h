@@ -14,6 +14,13 @@ namespace meniscus {
 /// glass: twelve bars along the edges that rays meet, and four panes that they pass.
 class TankBody {
  public:
+  /// Width of the joints in tiles.
+  static constexpr float kJoint = 0.05f;
+  /// What is seen of the edges of glass panes: light that was led there, greenish.
+  static constexpr vec3 kEdgeColour{0.62f, 0.80f, 0.74f};
+  static constexpr float kEdgeRoughness = 0.1f;
+  static constexpr float kGlass = 1.5f;  ///< index of refraction
+
   /// @throws Error invalid_argument: no space inside, an up direction that is no axis, sizes or colours out of range
   explicit TankBody(const Tank& tank);
 
@@ -42,6 +49,20 @@ class TankBody {
   };
   /// The panes before `limit` m along the ray, the nearest first.
   Panes panes(const Ray& ray, float limit) const;
+  /// A pane at this angle, wherever it is.
+  Pane pane(float cos_in) const;
+
+  /// The parts, for those who meet them with many rays at once.
+  const Tank& tank() const { return tank_; }
+  vec3 tile() const { return tile_; }
+  const std::array<Bounds, 12>& bars() const { return bars_; }
+  int up() const { return up_; }
+  int side() const { return side_; }
+  int other() const { return other_; }
+  /// Planes are this much larger than they are, m, so that no ray slips through a corner.
+  float overlap() const { return overlap_; }
+  /// How far water may bulge beyond a wall, m.
+  float bulge() const { return bulge_; }
 
  private:
   SolidHit tiled_hit(const Ray& ray, Beam beam, float from, float limit) const;
@@ -53,6 +74,7 @@ class TankBody {
   vec3 tile_{1.0f};  ///< edges of the tiles along the axes, m: whole tiles on every wall
   std::array<Bounds, 12> bars_;
   int up_ = 1, side_ = 2, other_ = 0;  ///< axes
+  float overlap_ = 0, bulge_ = 0;      ///< m
 };
 
 }  // namespace meniscus

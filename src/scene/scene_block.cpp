@@ -1,0 +1,225 @@
+// Rays in blocks: what they meet, and what light comes along them.
+#include <bit>
+#include <glm/common.hpp>
+#include <numbers>
+
+#include "scene/facing.h"
+#include "scene/scene_parts.h"
+
+namespace meniscus {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
+
+/// Fills up to whole vectors with copies of the last point.
+void close(BlockPoints& points, int count) {
+  for (int k = count; k % 16 != 0; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      points.at[axis][k] = points.at[axis][count - 1];
+      points.face_normal[axis][k] = points.face_normal[axis][count - 1];
+    }
+    points.width[k] = points.width[count - 1];
+  }
+}
+
+/// Calls body(first, block, count) for the rays in blocks, on all threads.
+template <class Body>
+void for_each_block(std::size_t count, Body body) {
+  parallel_for(count, 16 * RayBlock::kRays, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t first = begin; first < end; first += RayBlock::kRays)
+      body(first, static_cast<int>(std::min<std::size_t>(RayBlock::kRays, end - first)));
+  });
+}
+
+void fill(RayBlock& block, const Ray* rays, int count) {
+  for (int lane = 0; lane < count; ++lane) block.set(lane, rays[lane]);
+  block.close(count);
+}
+
+void check(bool same_length) {
+  if (!same_length) throw Error(ErrorCode::invalid_argument, "a list of results is not as long as the list of rays");
+}
+
+}  // namespace
+
+void Scene::Parts::meet(const RayBlock& rays, Beam beam, bool distances_only, BlockHits& hits) const {
+  const Planes planes{body.get(), ground, u_axis, v_axis};
+  plane_hits(planes, solids ? solids->box().box : Bounds{}, rays, beam, distances_only ? 0.0f : kTie, hits);
+  if (solids) solids->hits(rays, beam, !distances_only, hits);
+}
+
+vec3 Scene::Parts::normal_of(int face) const {
+  if (face == kGroundFace) return ground.up;
+  vec3 normal{0.0f};
+  if (face >= kTankFace) normal[face / 2] = face % 2 == 0 ? -1.0f : 1.0f;
+  return normal;
+}
+
+SolidHit Scene::Parts::hit_of(const BlockHits& hits, int lane) const {
+  const int face = hits.face[lane];
+  if (face == kSolidFace) return hits.solids[lane];
+  SolidHit hit;
+  if (face == kNothing) return hit;
+  hit.distance = hits.distance[lane];
+  hit.normal = hit.face_normal = normal_of(face);
+  hit.albedo = {hits.albedo[0][lane], hits.albedo[1][lane], hits.albedo[2][lane]};
+  hit.presence = hits.presence[lane];
+  if (face != kGroundFace && body->tank().style == TankStyle::glass) {
+    hit.roughness = TankBody::kEdgeRoughness;
+    hit.ior = TankBody::kGlass;
+  }
+  return hit;
+}
+
+void Scene::Parts::shade(const RayBlock& rays, Beam beam, const BlockHits& hits, vec3* radiance) const {
+  const bool bars = body && body->tank().style == TankStyle::glass;
+  const vec3 sun = environment.sun_direction(), sun_irradiance = environment.sun_irradiance();
+  int lanes[RayBlock::kRays];
+  int count = 0;
+  BlockPoints points;
+  vec3 places[RayBlock::kRays], normals[RayBlock::kRays];
+  float cosines[RayBlock::kRays];
+  for (int lane = 0; lane < rays.count; ++lane) {
+    const int face = hits.face[lane];
+    if (face == kNothing) {
+      radiance[lane] = environment.radiance(rays.direction_of(lane));
+      continue;
+    }
+    // Coats show their surroundings: one by one.
+    const bool coated = face == kSolidFace ? hits.solids[lane].roughness < 1.0f : bars && face != kGroundFace;
+    if (coated) {
+      radiance[lane] = lit(hit_of(hits, lane), rays.ray(lane), beam);
+      continue;
+    }
+    const vec3 place = rays.point(lane, hits.distance[lane]);
+    vec3 face_normal = plane_normals[static_cast<std::size_t>(face)];
+    vec3 normal = face_normal;
+    cosines[count] = plane_cosines[static_cast<std::size_t>(face)];
+    if (face == kSolidFace) {
+      normal = hits.solids[lane].normal;
+      face_normal = hits.solids[lane].face_normal;
+      cosines[count] = facing(normal, face_normal, sun);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      points.at[axis][count] = place[axis];
+      points.face_normal[axis][count] = face_normal[axis];
+    }
+    points.width[count] = beam.width + beam.spread * hits.distance[lane];
+    places[count] = place;
+    normals[count] = normal;
+    lanes[count++] = lane;
+  }
+  if (count == 0) return;
+  close(points, count);
+
+  if (body || solids) {
+    sun_past_planes({body.get(), ground, u_axis, v_axis}, solids ? solids->box() : SolidsBox{}, sun_path, count,
+                    points);
+    if (solids) sun_past_solids(cosines, count, points);
+  }
+  const auto n = static_cast<std::size_t>(count);
+  WaterLight::Light unchanged;
+  std::array<WaterLight::Light, RayBlock::kRays> water;
+  if (water_light) water_light->at_each({places, n}, {normals, n}, {water.data(), n});
+
+  for (int k = 0; k < count; ++k) {
+    const int lane = lanes[k], face = hits.face[lane];
+    const WaterLight::Light& light = water_light ? water[static_cast<std::size_t>(k)] : unchanged;
+    const vec3 sky =
+        face == kSolidFace ? environment.irradiance(normals[k]) : plane_skies[static_cast<std::size_t>(face)];
+    vec3 sum = light.sky * sky + light.refracted;
+    vec3 direct = light.sun * sun_irradiance * cosines[k];
+    if (body || solids) direct *= vec3{points.light[0][k], points.light[1][k], points.light[2][k]};
+    sum += direct;
+    if (!lamps.empty()) {
+      const vec3 face_normal{points.face_normal[0][k], points.face_normal[1][k], points.face_normal[2][k]};
+      sum += lamp_irradiance(places[k], normals[k], face_normal, light.lamps);
+    }
+    const vec3 albedo{hits.albedo[0][lane], hits.albedo[1][lane], hits.albedo[2][lane]};
+    radiance[lane] = albedo * kPerPi * sum;
+  }
+  for (int k = 0; k < count; ++k) {
+    const int lane = lanes[k];
+    if (hits.presence[lane] < 1.0f)
+      radiance[lane] = glm::mix(environment.radiance(rays.direction_of(lane)), radiance[lane], hits.presence[lane]);
+  }
+}
+
+void Scene::Parts::sun_past_solids(const float* cosines, int count, BlockPoints& points) const {
+  // Lanes whose cone towards the sun may be cut: four rays each on its edge, four lanes at once.
+  constexpr int kAtOnce = 4;
+  const auto ray_of = [&](int k, std::size_t number) {
+    const vec3 place{points.at[0][k], points.at[1][k], points.at[2][k]};
+    const vec3 face_normal{points.face_normal[0][k], points.face_normal[1][k], points.face_normal[2][k]};
+    return sun_ray(place + clearance(place) * face_normal, face_normal, points.width[k], number);
+  };
+  int waiting[kAtOnce];
+  int held = 0;
+  Ray rays[16];
+  const auto trace = [&] {
+    const unsigned passed = solids->passing({rays, 4 * static_cast<std::size_t>(held)});
+    for (int j = 0; j < held; ++j) {
+      const int k = waiting[j];
+      auto seen = std::popcount((passed >> (4 * j)) & 15u);
+      if (seen == 4) continue;
+      float part = 0;
+      if (seen != 0) {
+        Ray more[12];
+        for (std::size_t i = 0; i < 12; ++i) more[i] = ray_of(k, 4 + i);
+        seen += std::popcount(solids->passing(more));
+        part = static_cast<float>(seen) / 16.0f;
+      }
+      for (auto& light : points.light) light[k] *= part;
+    }
+    held = 0;
+  };
+  for (int k = 0; k < count; ++k) {
+    const bool lit_at_all = points.light[0][k] > 0 || points.light[1][k] > 0 || points.light[2][k] > 0;
+    if (points.near_solids[k] == 0 || !(cosines[k] > 0) || !lit_at_all) continue;
+    for (std::size_t i = 0; i < 4; ++i) rays[4 * static_cast<std::size_t>(held) + i] = ray_of(k, i);
+    waiting[held++] = k;
+    if (held == kAtOnce) trace();
+  }
+  if (held > 0) trace();
+}
+
+void Scene::hits(std::span<const Ray> rays, Beam beam, std::span<SolidHit> hits) const {
+  check(rays.size() == hits.size());
+  for_each_block(rays.size(), [&](std::size_t first, int count) {
+    RayBlock block;
+    BlockHits met;
+    fill(block, rays.data() + first, count);
+    parts_->meet(block, beam, false, met);
+    for (int lane = 0; lane < count; ++lane) hits[first + static_cast<std::size_t>(lane)] = parts_->hit_of(met, lane);
+  });
+}
+
+void Scene::radiance(std::span<const Ray> rays, Beam beam, std::span<vec3> radiance, std::span<float> distance) const {
+  check(rays.size() == radiance.size() && (distance.empty() || rays.size() == distance.size()));
+  for_each_block(rays.size(), [&](std::size_t first, int count) {
+    RayBlock block;
+    BlockHits met;
+    fill(block, rays.data() + first, count);
+    parts_->meet(block, beam, false, met);
+    parts_->shade(block, beam, met, radiance.data() + first);
+    if (!distance.empty()) std::copy_n(met.distance, count, distance.data() + first);
+  });
+}
+
+void Scene::distances(std::span<const Ray> rays, std::span<float> distance) const {
+  check(rays.size() == distance.size());
+  for_each_block(rays.size(), [&](std::size_t first, int count) {
+    RayBlock block;
+    BlockHits met;
+    fill(block, rays.data() + first, count);
+    parts_->meet(block, {}, true, met);
+    std::copy_n(met.distance, count, distance.data() + first);
+  });
+}
+
+void WaterLight::at_each(std::span<const vec3> points, std::span<const vec3> normals, std::span<Light> lights) const {
+  for (std::size_t i = 0; i < points.size(); ++i) lights[i] = at(points[i], normals[i]);
+}
+
+}  // namespace meniscus
