@@ -86,11 +86,14 @@ PlacedSolids::PlacedSolids(std::vector<PlacedSolid> placed) : scene_(make_embree
     rtcAttachGeometryByID(scene_.get(), instance.get(), static_cast<unsigned>(places_.size()));
 
     const Bounds box = solid->bounds();
+    Bounds part;
     for (int corner = 0; corner < 8 && !box.empty(); ++corner) {
       const vec3 at{corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
                     corner & 4 ? box.high.z : box.low.z};
-      bounds_.add(vec3(p.world_from_solid * glm::vec4(at, 1.0f)));
+      part.add(vec3(p.world_from_solid * glm::vec4(at, 1.0f)));
     }
+    bounds_.add(part);
+    box_.parts.push_back(part);
     const glm::mat3 linear(p.world_from_solid);
     auto texture = p.material ? solid->texture_of(p.material->texture) : nullptr;
     places_.push_back(
@@ -99,7 +102,10 @@ PlacedSolids::PlacedSolids(std::vector<PlacedSolid> placed) : scene_(make_embree
   rtcCommitScene(scene_.get());
   check_embree();
   const vec3 size = glm::max(glm::abs(bounds_.low), glm::abs(bounds_.high));
-  box_.box = bounds_.grown(1e-5f * std::max({size.x, size.y, size.z}));
+  const float margin = 1e-5f * std::max({size.x, size.y, size.z});
+  box_.box = bounds_.grown(margin);
+  if (box_.parts.size() > SolidsBox::kMostParts) box_.parts.clear();
+  for (Bounds& part : box_.parts) part = part.grown(margin);
   box_.centre = box_.box.centre();
   box_.half_diagonal = 0.5f * glm::length(box_.box.extent());
 }

@@ -20,15 +20,17 @@ struct Planes {
 
 /// Solids as far as a vectorised test asks for them.
 struct SolidsBox {
+  static constexpr std::size_t kMostParts = 16;
   Bounds box;  ///< empty: none
   vec3 centre{0.0f};
-  float half_diagonal = 0;  ///< m
+  float half_diagonal = 0;    ///< m
+  std::vector<Bounds> parts;  ///< of each solid, if there are not too many; else empty
 };
 
-/// What of planes each ray meets first: distance, face, albedo, presence; and whether it meets the box before.
+/// What of planes each ray meets first: distance, face, albedo, presence; and whether it meets a solid's box before.
 /// The same as TankBody::hit() and Scene::Parts::ground_hit() to rounding.
 /// @param tie  fraction of the distance within which the tank comes before the ground
-void plane_hits(const Planes& planes, const Bounds& solids, const RayBlock& rays, Beam beam, float tie,
+void plane_hits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie,
                 BlockHits& hits);
 
 /// The sun as light on planes.

@@ -101,16 +101,23 @@ HWY_INLINE void sun_at(const Planes& planes, const SolidsBox& solids, const SunP
     const Vec square = hn::Add(hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y)), hn::Mul(off_z, off_z));
     const Vec farthest = hn::Add(hn::Sqrt(square), all(solids.half_diagonal));
     const Vec margin = hn::Add(hn::Load(d, points.width + first), hn::Mul(all(sun.cone), farthest));
-    Vec enter = zero, leave = infinity;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float along = sun.direction[axis];
-      const Vec inverse = all(1.0f / (std::abs(along) < 1e-20f ? 1e-20f : along));
-      const Vec a = hn::Mul(hn::Sub(hn::Sub(all(solids.box.low[axis]), margin), start(axis)), inverse);
-      const Vec b = hn::Mul(hn::Sub(hn::Add(all(solids.box.high[axis]), margin), start(axis)), inverse);
-      enter = hn::Max(hn::Min(a, b), enter);
-      leave = hn::Min(hn::Max(a, b), leave);
+    const auto near_to = [&](const Bounds& box) HWY_ATTR {
+      Vec enter = zero, leave = infinity;
+      for (int axis = 0; axis < 3; ++axis) {
+        const float along = sun.direction[axis];
+        const Vec inverse = all(1.0f / (std::abs(along) < 1e-20f ? 1e-20f : along));
+        const Vec a = hn::Mul(hn::Sub(hn::Sub(all(box.low[axis]), margin), start(axis)), inverse);
+        const Vec b = hn::Mul(hn::Sub(hn::Add(all(box.high[axis]), margin), start(axis)), inverse);
+        enter = hn::Max(hn::Min(a, b), enter);
+        leave = hn::Min(hn::Max(a, b), leave);
+      }
+      return hn::IfThenElseZero(hn::Le(enter, leave), all(1.0f));
+    };
+    near = near_to(solids.box);
+    if (!solids.parts.empty() && !hn::AllFalse(d, hn::Gt(near, zero))) {
+      near = zero;
+      for (const Bounds& part : solids.parts) near = hn::Max(near, near_to(part));
     }
-    near = hn::IfThenElseZero(hn::Le(enter, leave), all(1.0f));
   }
   hn::Store(hn::ConvertTo(di, near), di, points.near_solids + first);
 }

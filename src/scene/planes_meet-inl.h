@@ -23,7 +23,7 @@ class Meeting {
   HWY_INLINE Meeting(const Planes& planes, const RayBlock& rays, int first)
       : planes_(planes), rays_(rays), first_(static_cast<std::size_t>(first)) {}
 
-  HWY_INLINE void run(const Bounds& solids, Beam beam, float tie, BlockHits& hits) const {
+  HWY_INLINE void run(const SolidsBox& solids, Beam beam, float tie, BlockHits& hits) const {
     const Tag d;
     Vec best = all(std::numeric_limits<float>::infinity()), face = all(static_cast<float>(kNothing));
     Vec red = hn::Zero(d), green = red, blue = red, presence = all(1.0f);
@@ -40,10 +40,12 @@ class Meeting {
     const hn::RebindToSigned<Tag> di;
     hn::Store(hn::ConvertTo(di, face), di, hits.face + first_);
     Vec near = hn::Zero(d);
-    if (!solids.empty()) {
-      Vec enter, leave, axis;
-      cross(solids, enter, leave, axis);
-      near = hn::IfThenElseZero(hn::Le(hn::Max(enter, hn::Zero(d)), hn::Min(leave, best)), all(1.0f));
+    if (!solids.box.empty()) {
+      near = near_to(solids.box, best);
+      if (!solids.parts.empty() && !hn::AllFalse(d, hn::Gt(near, hn::Zero(d)))) {
+        near = hn::Zero(d);
+        for (const Bounds& part : solids.parts) near = hn::Max(near, near_to(part, best));
+      }
     }
     hn::Store(hn::ConvertTo(di, near), di, hits.near_solids + first_);
   }
@@ -155,6 +157,13 @@ class Meeting {
       enter = hn::Max(in, enter);
       leave = hn::Min(hn::Max(a, b), leave);
     }
+  }
+
+  /// One where a box is met before `limit`.
+  HWY_INLINE Vec near_to(const Bounds& box, Vec limit) const {
+    Vec enter, leave, axis;
+    cross(box, enter, leave, axis);
+    return hn::IfThenElseZero(hn::Le(hn::Max(enter, hn::Zero(Tag())), hn::Min(leave, limit)), all(1.0f));
   }
 
   /// See TankBody::bar_hit().

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
 
-void PlaneHits(const Planes& planes, const Bounds& solids, const RayBlock& rays, Beam beam, float tie,
+void PlaneHits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie,
                BlockHits& hits) {
   const auto lanes = static_cast<int>(hn::Lanes(Tag()));
   for (int first = 0; first < rays.count; first += lanes) Meeting(planes, rays, first).run(solids, beam, tie, hits);
@@ -34,7 +34,7 @@ namespace meniscus {
 HWY_EXPORT(PlaneHits);
 HWY_EXPORT(SunPastPlanes);
 
-void plane_hits(const Planes& planes, const Bounds& solids, const RayBlock& rays, Beam beam, float tie,
+void plane_hits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie,
                 BlockHits& hits) {
   HWY_DYNAMIC_DISPATCH(PlaneHits)(planes, solids, rays, beam, tie, hits);
 }

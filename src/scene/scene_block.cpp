@@ -1,4 +1,5 @@
 // Rays in blocks: what they meet, and what light comes along them.
+#include <algorithm>
 #include <bit>
 #include <glm/common.hpp>
 #include <numbers>
@@ -23,18 +24,19 @@ void close(BlockPoints& points, int count) {
   }
 }
 
-/// Calls body(first, block, count) for the rays in blocks, on all threads.
+/// Calls body(block, hits, first) for the rays in blocks, on all threads; the hits are to be overwritten.
 template <class Body>
-void for_each_block(std::size_t count, Body body) {
-  parallel_for(count, 16 * RayBlock::kRays, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t first = begin; first < end; first += RayBlock::kRays)
-      body(first, static_cast<int>(std::min<std::size_t>(RayBlock::kRays, end - first)));
+void for_each_block(std::span<const Ray> rays, Body body) {
+  parallel_for(rays.size(), 16 * RayBlock::kRays, [&](std::size_t begin, std::size_t end) {
+    RayBlock block;
+    BlockHits hits;
+    for (std::size_t first = begin; first < end; first += RayBlock::kRays) {
+      const auto count = static_cast<int>(std::min<std::size_t>(RayBlock::kRays, end - first));
+      for (int lane = 0; lane < count; ++lane) block.set(lane, rays[first + static_cast<std::size_t>(lane)]);
+      block.close(count);
+      body(block, hits, first);
+    }
   });
-}
-
-void fill(RayBlock& block, const Ray* rays, int count) {
-  for (int lane = 0; lane < count; ++lane) block.set(lane, rays[lane]);
-  block.close(count);
 }
 
 void check(bool same_length) {
@@ -45,7 +47,8 @@ void check(bool same_length) {
 
 void Scene::Parts::meet(const RayBlock& rays, Beam beam, bool distances_only, BlockHits& hits) const {
   const Planes planes{body.get(), ground, u_axis, v_axis};
-  plane_hits(planes, solids ? solids->box().box : Bounds{}, rays, beam, distances_only ? 0.0f : kTie, hits);
+  static const SolidsBox none;
+  plane_hits(planes, solids ? solids->box() : none, rays, beam, distances_only ? 0.0f : kTie, hits);
   if (solids) solids->hits(rays, beam, !distances_only, hits);
 }
 
@@ -114,14 +117,15 @@ void Scene::Parts::shade(const RayBlock& rays, Beam beam, const BlockHits& hits,
   close(points, count);
 
   if (body || solids) {
-    sun_past_planes({body.get(), ground, u_axis, v_axis}, solids ? solids->box() : SolidsBox{}, sun_path, count,
-                    points);
+    static const SolidsBox none;
+    sun_past_planes({body.get(), ground, u_axis, v_axis}, solids ? solids->box() : none, sun_path, count, points);
     if (solids) sun_past_solids(cosines, count, points);
   }
   const auto n = static_cast<std::size_t>(count);
-  WaterLight::Light unchanged;
-  std::array<WaterLight::Light, RayBlock::kRays> water;
-  if (water_light) water_light->at_each({places, n}, {normals, n}, {water.data(), n});
+  // As without water, or what it does at each point.
+  const WaterLight::Light unchanged;
+  std::vector<WaterLight::Light> water(water_light ? n : 0);
+  if (water_light) water_light->at_each({places, n}, {normals, n}, water);
 
   for (int k = 0; k < count; ++k) {
     const int lane = lanes[k], face = hits.face[lane];
@@ -186,35 +190,27 @@ void Scene::Parts::sun_past_solids(const float* cosines, int count, BlockPoints&
 
 void Scene::hits(std::span<const Ray> rays, Beam beam, std::span<SolidHit> hits) const {
   check(rays.size() == hits.size());
-  for_each_block(rays.size(), [&](std::size_t first, int count) {
-    RayBlock block;
-    BlockHits met;
-    fill(block, rays.data() + first, count);
+  for_each_block(rays, [&](const RayBlock& block, BlockHits& met, std::size_t first) {
     parts_->meet(block, beam, false, met);
-    for (int lane = 0; lane < count; ++lane) hits[first + static_cast<std::size_t>(lane)] = parts_->hit_of(met, lane);
+    for (int lane = 0; lane < block.count; ++lane)
+      hits[first + static_cast<std::size_t>(lane)] = parts_->hit_of(met, lane);
   });
 }
 
 void Scene::radiance(std::span<const Ray> rays, Beam beam, std::span<vec3> radiance, std::span<float> distance) const {
   check(rays.size() == radiance.size() && (distance.empty() || rays.size() == distance.size()));
-  for_each_block(rays.size(), [&](std::size_t first, int count) {
-    RayBlock block;
-    BlockHits met;
-    fill(block, rays.data() + first, count);
+  for_each_block(rays, [&](const RayBlock& block, BlockHits& met, std::size_t first) {
     parts_->meet(block, beam, false, met);
     parts_->shade(block, beam, met, radiance.data() + first);
-    if (!distance.empty()) std::copy_n(met.distance, count, distance.data() + first);
+    if (!distance.empty()) std::copy_n(met.distance, block.count, distance.data() + first);
   });
 }
 
 void Scene::distances(std::span<const Ray> rays, std::span<float> distance) const {
   check(rays.size() == distance.size());
-  for_each_block(rays.size(), [&](std::size_t first, int count) {
-    RayBlock block;
-    BlockHits met;
-    fill(block, rays.data() + first, count);
+  for_each_block(rays, [&](const RayBlock& block, BlockHits& met, std::size_t first) {
     parts_->meet(block, {}, true, met);
-    std::copy_n(met.distance, count, distance.data() + first);
+    std::copy_n(met.distance, block.count, distance.data() + first);
   });
 }
 

@@ -61,8 +61,8 @@ struct Scene::Parts {
   void shade(const RayBlock& rays, Beam beam, const BlockHits& hits, vec3* radiance) const;
   /// Takes away what solids keep of the sun's light. @param cosines  of that light, one a point; only > 0 are looked at
   void sun_past_solids(const float* cosines, int count, BlockPoints& points) const;
-  /// Draws the rays of some pixels.
-  void see(const RayBlock& rays, Beam beam, const std::size_t* pixels, SceneBuffers& seen) const;
+  /// Draws the rays of some pixels. @param hits  overwritten
+  void see(const RayBlock& rays, Beam beam, const std::size_t* pixels, BlockHits& hits, SceneBuffers& seen) const;
 };
 
 }  // namespace meniscus

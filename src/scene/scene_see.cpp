@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "scene/scene_parts.h"
+#include "scene/view_rays.h"
 
 namespace meniscus {
 namespace {
@@ -13,10 +14,18 @@ Beam beam_of(const View& view) {
   return {0.0f, view.pixel_size(1.0f)};
 }
 
+/// What a thread works with.
+struct Work {
+  RayBlock rays;
+  BlockHits hits;
+  BlockPixels points;
+  std::size_t pixels[RayBlock::kRays];
+};
+
 }  // namespace
 
-void Scene::Parts::see(const RayBlock& rays, Beam beam, const std::size_t* pixels, SceneBuffers& seen) const {
-  BlockHits hits;
+void Scene::Parts::see(const RayBlock& rays, Beam beam, const std::size_t* pixels, BlockHits& hits,
+                       SceneBuffers& seen) const {
   vec3 radiance[RayBlock::kRays];
   meet(rays, beam, false, hits);
   shade(rays, beam, hits, radiance);
@@ -41,42 +50,44 @@ SceneBuffers Scene::see(const View& view, std::span<const vec2> points, StageTim
   constexpr int kRays = RayBlock::kRays;
   if (!points.empty()) {
     parallel_for(points.size(), 16 * kRays, [&](std::size_t begin, std::size_t end) {
+      Work work;
       for (std::size_t first = begin; first < end; first += kRays) {
-        RayBlock rays;
-        std::size_t pixels[kRays];
-        const auto count = static_cast<int>(std::min<std::size_t>(kRays, end - first));
-        for (int lane = 0; lane < count; ++lane) {
-          pixels[lane] = first + static_cast<std::size_t>(lane);
-          rays.set(lane, view.ray(points[pixels[lane]]));
+        const std::size_t count = std::min<std::size_t>(kRays, end - first);
+        for (std::size_t k = 0; k < count; ++k) {
+          work.pixels[k] = first + k;
+          work.points.x[k] = points[first + k].x;
+          work.points.y[k] = points[first + k].y;
         }
-        rays.close(count);
-        parts_->see(rays, beam, pixels, seen);
+        view_rays(view, work.points, static_cast<int>(count), work.rays);
+        parts_->see(work.rays, beam, work.pixels, work.hits, seen);
       }
     });
     return seen;
   }
-  // Square tiles: their rays stay close together.
+  // Square tiles: their rays stay close together. A cube's six faces are six pictures.
   constexpr int kTile = 8;
   static_assert(kTile * kTile == kRays);
-  const int across = (width + kTile - 1) / kTile, down = (height + kTile - 1) / kTile;
-  parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 16,
-               [&](std::size_t begin, std::size_t end) {
-                 for (std::size_t tile = begin; tile < end; ++tile) {
-                   const int x0 = static_cast<int>(tile % static_cast<std::size_t>(across)) * kTile;
-                   const int y0 = static_cast<int>(tile / static_cast<std::size_t>(across)) * kTile;
-                   RayBlock rays;
-                   std::size_t pixels[kRays];
-                   int count = 0;
-                   for (int y = y0; y < std::min(y0 + kTile, height); ++y)
-                     for (int x = x0; x < std::min(x0 + kTile, width); ++x) {
-                       pixels[count] =
-                           static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-                       rays.set(count++, view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
-                     }
-                   rays.close(count);
-                   parts_->see(rays, beam, pixels, seen);
-                 }
-               });
+  const bool cube = view.projection == Projection::cube;
+  const int edge_x = cube ? height : width;
+  const auto across = static_cast<std::size_t>((edge_x + kTile - 1) / kTile);
+  const auto down = static_cast<std::size_t>((height + kTile - 1) / kTile);
+  parallel_for((cube ? 6 : 1) * across * down, 16, [&](std::size_t begin, std::size_t end) {
+    Work work;
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      const int face = static_cast<int>(tile / (across * down));
+      const int x0 = static_cast<int>(tile % across) * kTile, y0 = static_cast<int>(tile / across % down) * kTile;
+      int count = 0;
+      for (int y = y0; y < std::min(y0 + kTile, height); ++y)
+        for (int x = x0; x < std::min(x0 + kTile, edge_x); ++x, ++count) {
+          work.pixels[count] = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                               static_cast<std::size_t>(face * height + x);
+          work.points.x[count] = static_cast<float>(x) + 0.5f;
+          work.points.y[count] = static_cast<float>(y) + 0.5f;
+        }
+      view_rays(cube ? view.face(face) : view, work.points, count, work.rays);
+      parts_->see(work.rays, beam, work.pixels, work.hits, seen);
+    }
+  });
   return seen;
 }
 

@@ -337,8 +337,8 @@ TEST(SceneView, DepthIsTheDistanceAlongTheRay) {
   const SceneBuffers seen = scene.see(orthographic);
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 30; ++x)
-      EXPECT_EQ(seen.depth(x, y),
-                scene.distance(orthographic.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f})));
+      EXPECT_FLOAT_EQ(seen.depth(x, y),
+                      scene.distance(orthographic.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f})));
 }
 
 }  // namespace
