@@ -10,7 +10,6 @@
 namespace meniscus {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
 
 /// Fills up to whole vectors with copies of the last point.
