@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "meniscus/image.h"
+#include "image/tone.h"
 
 namespace meniscus {
 namespace {
@@ -43,13 +43,16 @@ float exposed(float radiance, float factor) {
 
 }  // namespace
 
-vec3 tone_mapped(vec3 radiance, const ToneOptions& options) {
-  const float factor = std::exp2(options.exposure_ev);
+vec3 tone_mapped(vec3 radiance, float factor, ToneCurve curve) {
   vec3 c{exposed(radiance.x, factor), exposed(radiance.y, factor), exposed(radiance.z, factor)};
-  if (options.curve == ToneCurve::linear) return {std::min(c.x, 1.0f), std::min(c.y, 1.0f), std::min(c.z, 1.0f)};
+  if (curve == ToneCurve::linear) return {std::min(c.x, 1.0f), std::min(c.y, 1.0f), std::min(c.z, 1.0f)};
   // Equal channels would pick up rounding errors from their mean.
   if (c.x != c.y || c.y != c.z) c = highlights_desaturated(c);
   return {narkowicz(kGreyScale * c.x), narkowicz(kGreyScale * c.y), narkowicz(kGreyScale * c.z)};
+}
+
+vec3 tone_mapped(vec3 radiance, const ToneOptions& options) {
+  return tone_mapped(radiance, std::exp2(options.exposure_ev), options.curve);
 }
 
 }  // namespace meniscus

@@ -143,5 +143,36 @@ TEST(Developing, GivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE(std::equal(many.begin(), many.end(), single.begin()));
 }
 
+/// Bayer's matrix by its recursion [Bayer1973]: M of twice the size is 4 M, 4 M + 2; 4 M + 3, 4 M + 1.
+int bayer(int x, int y, int size) {
+  if (size == 1) return 0;
+  const int half = size / 2;
+  const int quadrant[2][2] = {{0, 2}, {3, 1}};
+  return 4 * bayer(x % half, y % half, half) + quadrant[y / half][x / half];
+}
+
+TEST(Developing, RoundsLikeThePlainCurve) {
+  // Every threshold of the dither meets a fine sweep of brightness.
+  constexpr int kWidth = 8 * 256, kHeight = 8 * 64;
+  Image<vec3> radiance(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const int step = (y / 8) * (kWidth / 8) + x / 8;
+      const float value = 1.02f * static_cast<float>(step) / static_cast<float>(kWidth / 8 * kHeight / 8);
+      radiance(x, y) = vec3{value, value * value, 0.01f * value};
+    }
+  const Image<Rgb8> picture = developed(radiance, {.curve = ToneCurve::linear});
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const float offset = (static_cast<float>(bayer(x % 8, y % 8, 8)) + 0.5f) / 64.0f - 0.5f;
+      const auto expected = [&](float value) {
+        return static_cast<int>(std::floor(255.0f * srgb_from_linear(std::min(value, 1.0f)) + offset + 0.5f));
+      };
+      ASSERT_EQ(picture(x, y).r, expected(radiance(x, y).x)) << x << " " << y;
+      ASSERT_EQ(picture(x, y).g, expected(radiance(x, y).y)) << x << " " << y;
+      ASSERT_EQ(picture(x, y).b, expected(radiance(x, y).z)) << x << " " << y;
+    }
+}
+
 }  // namespace
 }  // namespace meniscus
