@@ -57,12 +57,16 @@ Image<Rgb8> developed(const Image<vec3>& radiance, const ToneOptions& options) {
   const float factor = std::exp2(options.exposure_ev);
   Image<Rgb8> picture(radiance.width(), radiance.height());
   parallel_for(static_cast<std::size_t>(radiance.height()), kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      std::array<float, 8> offsets;
+      for (int x = 0; x < 8; ++x) offsets[static_cast<std::size_t>(x)] = dither(x, y);
       for (int x = 0; x < radiance.width(); ++x) {
         const vec3 c = tone_mapped(radiance(x, y), factor, options.curve);
-        const float offset = dither(x, y);  // the same for all channels, so that grey stays grey
+        const float offset =
+            offsets[static_cast<std::size_t>(x % 8)];  // the same for all channels, so that grey stays grey
         picture(x, y) = {quantised(c.x, offset, table), quantised(c.y, offset, table), quantised(c.z, offset, table)};
       }
+    }
   });
   return picture;
 }
