@@ -109,6 +109,7 @@ const Section& heights_section();
 const Section& height_field_section();
 const Section& colour_section();
 const Section& mesh_section();
+const Section& material_section();
 const Section& transform_section();
 const Section& rotate_section();
 const Section& obstacle_section();
@@ -130,6 +131,13 @@ void read_section(const JsonValue& value, const Section& section, Draft& draft);
 /// What concerns several sections: where the water comes from, what a simulation needs, who is dragged.
 void finish_file(const JsonValue& value, Draft& draft);
 
+/// How a body is placed; in meshes and in each of their frames.
+std::vector<Field> transform_fields();
+void forget_transform(Draft& draft);
+/// The placement that those fields of this object describe.
+glm::mat4 transform_of(const JsonValue& value, const Draft& draft);
+/// Transforms of the last mesh, one a frame: a list, or a file of one.
+void store_mesh_frames(const JsonValue& value, Draft& draft);
 /// Three Euler angles, degrees about x, then y, then z.
 glm::mat4 turned_by(vec3 degrees);
 /// Two corners of a box with space inside, or a refusal.
