@@ -133,17 +133,24 @@ const Section& caustics_section() {
         [](const JsonValue& v, Draft& d) { caustics(d).method = caustics_method_of(v.text()); }},
        {"simple",
         {numbers(3, between(-1e6, 1e6))},
-        "[0.6, 1.5, 0.5]",
+        "[1.5, -0.8, 0.35]",
         "simple, combined: factor of the height, factor of the gradient, and what is added",
         [](const JsonValue& v, Draft& d) {
           caustics(d).simple_a = v.at(0).real();
           caustics(d).simple_b = v.at(1).real();
           caustics(d).simple_c = v.at(2).real();
         }},
+       {"simple_keeps_mean",
+        {a_boolean()},
+        "true",
+        "simple, combined: scaled so that the floor gets as much light as under still water; off: as published",
+        [](const JsonValue& v, Draft& d) { caustics(d).simple_keeps_mean = v.boolean(); }},
        {"on_walls",
         {a_boolean()},
         "true",
-        "simple, light_map, combined: light that the water mirrors onto the walls above it",
+        "Light that the water mirrors onto the walls above it and onto bodies; triangles: where the surface is a "
+        "height "
+        "field",
         [](const JsonValue& v, Draft& d) { caustics(d).on_walls = v.boolean(); }},
        {"screen",
         {whole_numbers(2, between(0, 4096))},

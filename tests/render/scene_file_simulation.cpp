@@ -1,5 +1,6 @@
 #include <glm/gtc/quaternion.hpp>
 
+#include "render/scene_file_fields.h"
 #include "scene_file_fixture.h"
 
 namespace meniscus {
@@ -165,9 +166,9 @@ TEST_F(SceneFileSimulation, ReadsTheOpticsOfVirtualEyes) {
           "{\"water\": {\"surface\": \"height_field\", \"height_field\": {\"step\": 0.1, \"smoothing\": 0, "
           "\"iso_radius\": 0.2, \"iso\": 3}}, \"optics\": {\"refraction\": \"virtual_eye\", \"fresnel\": \"schlick\", "
           "\"dispersion\": true, \"eyes\": {\"map_size\": 64, \"displaced_eye\": false, \"trapezium_a\": 0.5, "
-          "\"per_point\": true, \"combine_distance\": 0.3}}, \"caustics\": {\"method\": \"combined\", \"simple\": [1, "
-          "2, "
-          "3], \"on_walls\": false}}")
+          "\"per_point\": true, \"object_position\": true, \"static_position\": false, \"combine_distance\": 0.3}}, "
+          "\"caustics\": {\"method\": \"combined\", \"simple\": [1, 2, 3], \"simple_keeps_mean\": false, "
+          "\"on_walls\": false}}")
           .picture;
   EXPECT_EQ(picture.method, SurfaceMethod::height_field);
   EXPECT_FLOAT_EQ(picture.height_field.step, 0.1f);
@@ -179,10 +180,53 @@ TEST_F(SceneFileSimulation, ReadsTheOpticsOfVirtualEyes) {
   EXPECT_EQ(picture.optics.eyes.map_size, 64);
   EXPECT_FALSE(picture.optics.eyes.displaced_eye);
   EXPECT_TRUE(picture.optics.eyes.per_point);
+  EXPECT_TRUE(picture.optics.eyes.object_position);
+  EXPECT_FALSE(picture.optics.eyes.static_position);
   EXPECT_FLOAT_EQ(picture.optics.eyes.combine_distance, 0.3f);
   EXPECT_EQ(picture.caustics_options.method, CausticsMethod::combined);
   EXPECT_FLOAT_EQ(picture.caustics_options.simple_b, 2);
+  EXPECT_FALSE(picture.caustics_options.simple_keeps_mean);
   EXPECT_FALSE(picture.caustics_options.on_walls);
+}
+
+/// An object with every field of a section whose default is a value, at that default.
+std::string at_defaults(const scene_file::Section& section) {
+  std::string text;
+  for (const scene_file::Field& field : section.fields)
+    if (field.standard.front() != '(') text += (text.empty() ? "\"" : ", \"") + field.name + "\": " + field.standard;
+  return "{" + text + "}";
+}
+
+TEST_F(SceneFileSimulation, DocumentsTheDefaultsThatOpticsHave) {
+  const PictureOptions said = read("{\"optics\": {\"eyes\": " + at_defaults(scene_file::eyes_section()) +
+                                   "}, \"caustics\": " + at_defaults(scene_file::caustics_section()) + "}")
+                                  .picture;
+  const VirtualEyeOptions eyes;
+  const VirtualEyeOptions& said_eyes = said.optics.eyes;
+  EXPECT_EQ(said_eyes.map_size, eyes.map_size);
+  EXPECT_EQ(said_eyes.displaced_eye, eyes.displaced_eye);
+  EXPECT_EQ(said_eyes.scale_correction, eyes.scale_correction);
+  EXPECT_EQ(said_eyes.adaptation, eyes.adaptation);
+  EXPECT_EQ(said_eyes.trapezium, eyes.trapezium);
+  EXPECT_EQ(said_eyes.trapezium_a, eyes.trapezium_a);
+  EXPECT_EQ(said_eyes.trapezium_b, eyes.trapezium_b);
+  EXPECT_EQ(said_eyes.per_point, eyes.per_point);
+  EXPECT_EQ(said_eyes.object_position, eyes.object_position);
+  EXPECT_EQ(said_eyes.static_position, eyes.static_position);
+  EXPECT_EQ(said_eyes.adaptation_width, eyes.adaptation_width);
+  const CausticsOptions caustics;
+  const CausticsOptions& said_caustics = said.caustics_options;
+  EXPECT_EQ(said_caustics.method, caustics.method);
+  EXPECT_EQ(said_caustics.simple_a, caustics.simple_a);
+  EXPECT_EQ(said_caustics.simple_b, caustics.simple_b);
+  EXPECT_EQ(said_caustics.simple_c, caustics.simple_c);
+  EXPECT_EQ(said_caustics.simple_keeps_mean, caustics.simple_keeps_mean);
+  EXPECT_EQ(said_caustics.on_walls, caustics.on_walls);
+  EXPECT_EQ(said_caustics.screen, caustics.screen);
+  EXPECT_EQ(said_caustics.iterations, caustics.iterations);
+  EXPECT_EQ(said_caustics.exact_hits, caustics.exact_hits);
+  EXPECT_EQ(said_caustics.single_interface, caustics.single_interface);
+  EXPECT_EQ(said_caustics.most_lights, caustics.most_lights);
 }
 
 }  // namespace
