@@ -1,6 +1,14 @@
 #include "sim/neighbours.h"
 
 namespace meniscus {
+namespace {
+
+/// Cells are so much larger than h: the rounding of their borders must not hide a neighbour beyond the next cell.
+constexpr float kCell_rel = 1.001f;
+/// Particles that share their candidates: in a cell pressed full the lists must not take the memory of their product.
+constexpr std::size_t kMostTogether = 16;
+
+}  // namespace
 
 void Neighbours::Lists::reserve(std::size_t wanted, std::size_t used) {
   if (wanted <= capacity) return;
@@ -14,24 +22,18 @@ void Neighbours::Lists::reserve(std::size_t wanted, std::size_t used) {
   capacity = larger;
 }
 
-void Candidates::gather(const ParticleGrid& grid, const ParticleGrid::CellBox& box) {
+void Candidates::gather(const ParticleGrid& grid, const ParticleGrid::CellBox& cells, const Bounds& box, float h) {
   count = 0;
-  for (int cz = box.z0; cz <= box.z1; ++cz)
-    for (int cy = box.y0; cy <= box.y1; ++cy) {
-      const ParticleGrid::Run run = grid.run(box.x0, box.x1, cy, cz);
-      const std::size_t more = run.end - run.begin;
-      if (x.size() < count + more + 16) {
-        const std::size_t larger = 2 * (count + more + 16);
-        for (auto* values : {&x, &y, &z}) values->resize(larger);
-        index.resize(larger);
+  for (int cz = cells.z0; cz <= cells.z1; ++cz)
+    for (int cy = cells.y0; cy <= cells.y1; ++cy) {
+      const ParticleGrid::Run run = grid.run(cells.x0, cells.x1, cy, cz);
+      const std::size_t room = count + (run.end - run.begin) + 32;
+      if (x.size() < room) {
+        for (auto* values : {&x, &y, &z}) values->resize(2 * room);
+        index.resize(2 * room);
       }
-      std::copy(grid.x() + run.begin, grid.x() + run.end, x.data() + count);
-      std::copy(grid.y() + run.begin, grid.y() + run.end, y.data() + count);
-      std::copy(grid.z() + run.begin, grid.z() + run.end, z.data() + count);
-      for (std::size_t k = 0; k < more; ++k) index[count + k] = static_cast<std::int32_t>(run.begin + k);
-      count += more;
+      gather_near(grid, run.begin, run.end, box, h * h, *this);
     }
-  for (std::size_t k = 0; k < 16; ++k) x[count + k] = y[count + k] = z[count + k] = 1e18f;
 }
 
 struct NeighbourSearch {
@@ -41,27 +43,40 @@ struct NeighbourSearch {
   void piece(std::size_t begin, std::size_t end) const {
     const ParticleGrid& grid = *all.grid_;
     Neighbours::Lists& lists = all.lists_[begin / Neighbours::kPiece];
-    Candidates candidates;
-    ParticleGrid::CellBox last{1, 1, 1, 0, 0, 0};
+    static thread_local Candidates candidates;
     std::size_t used = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      // A little more than h: the rounding of cell borders must not hide a neighbour from one of two.
-      const vec3 p = grid.position(i);
-      const ParticleGrid::CellBox box = grid.cells(p - 1.0001f * h, p + 1.0001f * h);
-      if (box.x0 != last.x0 || box.x1 != last.x1 || box.y0 != last.y0 || box.y1 != last.y1 || box.z0 != last.z0 ||
-          box.z1 != last.z1) {
-        candidates.gather(grid, box);
-        last = box;
+    for (std::size_t group = begin; group < end;) {
+      // Particles of one cell share their candidates: those near the box around them, half of what is in the cells.
+      const vec3 p = grid.position(group);
+      const ParticleGrid::CellBox own = grid.cells(p, p);
+      const std::size_t cell_end = grid.run(own.x0, own.x0, own.y0, own.z0).end;
+      const std::size_t group_end = std::max(group + 1, std::min({cell_end, end, group + kMostTogether}));
+      Bounds box;
+      for (std::size_t i = group; i < group_end; ++i) box.add(grid.position(i));
+      candidates.gather(grid, around(own), box, h);
+      lists.reserve(used + (group_end - group) * (candidates.count + 32) + 64, used);
+      for (std::size_t i = group; i < group_end; ++i) {
+        bool coincident = false;
+        const std::size_t found =
+            near_among(candidates, grid, i, h * h, lists.index.get() + used, lists.r2.get() + used, coincident);
+        all.first_[i] = static_cast<std::uint32_t>(used);
+        all.count_[i] = static_cast<std::uint32_t>(found);
+        all.coincident_[i] = coincident;
+        used += (found + 15) / 16 * 16;
       }
-      lists.reserve(used + candidates.count + 64, used);
-      float least;
-      const std::size_t found =
-          near_among(candidates, grid, i, h * h, lists.index.get() + used, lists.r2.get() + used, least);
-      all.first_[i] = static_cast<std::uint32_t>(used);
-      all.count_[i] = static_cast<std::uint32_t>(found);
-      all.coincident_[i] = least < 1e-8f * h * h;
-      used += (found + 15) / 16 * 16;
+      group = group_end;
     }
+  }
+
+  /// The cell with its neighbours.
+  ParticleGrid::CellBox around(const ParticleGrid::CellBox& cell) const {
+    const ParticleGrid& grid = *all.grid_;
+    return {std::max(cell.x0 - 1, 0),
+            std::max(cell.y0 - 1, 0),
+            std::max(cell.z0 - 1, 0),
+            std::min(cell.x0 + 1, grid.cells_x() - 1),
+            std::min(cell.y0 + 1, grid.cells_y() - 1),
+            std::min(cell.z0 + 1, grid.cells_z() - 1)};
   }
 };
 
@@ -69,7 +84,7 @@ void Neighbours::find(const std::vector<float>& x, const std::vector<float>& y, 
   positions_.x = x;
   positions_.y = y;
   positions_.z = z;
-  grid_.emplace(positions_, h);
+  grid_.emplace(positions_, kCell_rel * h);
   first_.resize(x.size());
   count_.resize(x.size());
   coincident_.resize(x.size());

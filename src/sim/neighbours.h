@@ -9,8 +9,8 @@
 
 namespace meniscus {
 
-/// The neighbours of one particle, itself left out. Lists are filled up to whole vectors of 16 with the particle itself
-/// at the squared distance h^2, where the kernels vanish.
+/// The neighbours of one particle, itself left out. Lists are filled up to whole vectors of 16 with the index size() at
+/// the squared distance 4 h^2, where the kernels vanish: the loops over pairs keep one particle more, far away from all.
 struct NeighbourList {
   const std::int32_t* index;  ///< in sorted order
   const float* r2;            ///< m^2, at the time of the search
@@ -53,19 +53,25 @@ class Neighbours {
   std::vector<std::uint8_t> coincident_;
 };
 
-/// The particles that may be neighbours of those of one cell, in a row: copied once, they are read by vectors.
+/// The particles that may be neighbours of a few: copied once, they are read by vectors.
 struct Candidates {
   std::vector<float> x, y, z;  ///< m; what fills the last vector is far away
   std::vector<std::int32_t> index;
   std::size_t count = 0;
-  void gather(const ParticleGrid& grid, const ParticleGrid::CellBox& box);
+  /// Those that are nearer than h to a box, in sorted order.
+  void gather(const ParticleGrid& grid, const ParticleGrid::CellBox& cells, const Bounds& box, float h);
 };
+
+/// Adds those of the sorted particles begin .. end that are nearer to a box than the root of h2; there is room for all
+/// of them and 16 more.
+void gather_near(const ParticleGrid& grid, std::size_t begin, std::size_t end, const Bounds& box, float h2,
+                 Candidates& to);
 
 /// Finds the candidates near particle `self`, which is among them and is left out.
 /// @param index, r2  room for all candidates and 32 more
-/// @param least  the least squared distance found, h2 at most
+/// @param coincident  whether one of them is in the same point
 /// @return       how many, at most Neighbours::kMost and without what fills the last vector
 std::size_t near_among(const Candidates& candidates, const ParticleGrid& grid, std::size_t self, float h2,
-                       std::int32_t* index, float* r2, float& least);
+                       std::int32_t* index, float* r2, bool& coincident);
 
 }  // namespace meniscus

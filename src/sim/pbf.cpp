@@ -63,38 +63,40 @@ class PbfSolver final : public FluidSolver {
         for (std::size_t i = begin; i < end; ++i) feel_walls(i);
         pbf_lambda(constants_, neighbours_, state_, begin, end);
       });
-      over_pieces("constraint",
-                  [&](std::size_t begin, std::size_t end) { pbf_change(constants_, neighbours_, state_, begin, end); });
-      each("constraint", [&](std::size_t i) { change(boundary, i, dt); });
+      over_pieces("constraint", [&](std::size_t begin, std::size_t end) {
+        pbf_change(constants_, neighbours_, state_, begin, end);
+        for (std::size_t i = begin; i < end; ++i) change(boundary, i, dt);
+      });
     }
     each("velocity", [&](std::size_t i) {
       const vec3 velocity = (place(i) - start_of(fluid, i)) / dt;
-      state_.vx[i] = velocity.x;
-      state_.vy[i] = velocity.y;
-      state_.vz[i] = velocity.z;
+      set_record(state_.velocity, i, velocity);
     });
-    over_pieces("velocity",
-                [&](std::size_t begin, std::size_t end) { pbf_blend(constants_, neighbours_, state_, begin, end); });
-    each("velocity", [&](std::size_t i) { finish(fluid, boundary, i); });
+    over_pieces("velocity", [&](std::size_t begin, std::size_t end) {
+      pbf_blend(constants_, neighbours_, state_, begin, end);
+      for (std::size_t i = begin; i < end; ++i) finish(fluid, boundary, i);
+    });
     if (options_.vorticity > 0) {
       over_pieces("velocity", [&](std::size_t begin, std::size_t end) {
         pbf_curl_slope(constants_, neighbours_, state_, begin, end);
+        for (std::size_t i = begin; i < end; ++i) confine(fluid, i, dt);
       });
-      each("velocity", [&](std::size_t i) { confine(fluid, i, dt); });
     }
     impulses_.add_to(impulses);
   }
 
-  vec3 place(std::size_t i) const { return {state_.x[i], state_.y[i], state_.z[i]}; }
+  vec3 place(std::size_t i) const { return state_.place_of(i); }
   vec3 start_of(const Fluid& fluid, std::size_t i) const {
     const std::uint32_t given = neighbours_.grid().given_index(i);
     return {fluid.x[given], fluid.y[given], fluid.z[given]};
   }
-  void set_place(std::size_t i, vec3 place) {
-    state_.x[i] = place.x;
-    state_.y[i] = place.y;
-    state_.z[i] = place.z;
+  static void set_record(std::vector<float>& records, std::size_t i, vec3 value) {
+    records[4 * i] = value.x;
+    records[4 * i + 1] = value.y;
+    records[4 * i + 2] = value.z;
+    records[4 * i + 3] = 0.0f;
   }
+  void set_place(std::size_t i, vec3 place) { set_record(state_.place, i, place); }
 
   void predict(const Fluid& fluid, std::size_t given, vec3 outer, float dt) {
     vec3 velocity = vec3{fluid.vx[given], fluid.vy[given], fluid.vz[given]} + dt * outer;
@@ -174,7 +176,7 @@ class PbfSolver final : public FluidSolver {
       for (std::size_t w = 0; w < walls.size(); ++w) {
         const float slope = constants_.solid * shares.weight[w] * formulas::spiky_over_plane(distance[w], constants_.h);
         const float own = kWallPush * constants_.h * constants_.h * wall_barrier(distance[w], options_.spacing);
-        push(walls[w], std::min(own - state_.lambda[i] * slope, farthest) * walls[w].normal);
+        push(walls[w], std::min(own - state_.lambda(i) * slope, farthest) * walls[w].normal);
       }
       for (int pass = 0; pass < (walls.size() > 1 ? 3 : 1); ++pass)
         for (const Wall& wall : walls) {
@@ -188,7 +190,7 @@ class PbfSolver final : public FluidSolver {
   /// Speeds and places to where they are kept; walls drag.
   void finish(Fluid& fluid, const Boundary& boundary, std::size_t i) {
     const std::uint32_t given = neighbours_.grid().given_index(i);
-    vec3 velocity{state_.vx[i], state_.vy[i], state_.vz[i]};
+    vec3 velocity = state_.velocity_of(i);
     vec3 added{state_.dx[i], state_.dy[i], state_.dz[i]};
     const std::span<const Wall> walls = walls_.of(i);
     if (!walls.empty() && constants_.blend > 0) {
@@ -208,16 +210,17 @@ class PbfSolver final : public FluidSolver {
     fluid.vx[given] = velocity.x;
     fluid.vy[given] = velocity.y;
     fluid.vz[given] = velocity.z;
-    fluid.x[given] = state_.x[i];
-    fluid.y[given] = state_.y[i];
-    fluid.z[given] = state_.z[i];
+    const vec3 now = place(i);
+    fluid.x[given] = now.x;
+    fluid.y[given] = now.y;
+    fluid.z[given] = now.z;
   }
 
   /// v += dt epsilon N x omega with N along the gradient of |omega|.                      [Macklin2013] eq. 16
   void confine(Fluid& fluid, std::size_t i, float dt) const {
     const vec3 slope{state_.dx[i], state_.dy[i], state_.dz[i]};
     const float steepness = length(slope);
-    if (!(steepness * constants_.h > 1e-3f * state_.curl[i])) return;
+    if (!(steepness * constants_.h > 1e-3f * state_.pressed[4 * i + 3])) return;
     const vec3 curl{state_.curl_x[i], state_.curl_y[i], state_.curl_z[i]};
     const vec3 added = dt * options_.vorticity * constants_.h / steepness * cross(slope, curl);
     const std::uint32_t given = neighbours_.grid().given_index(i);
@@ -239,10 +242,17 @@ class PbfSolver final : public FluidSolver {
 }  // namespace
 
 void PbfState::resize(std::size_t size, bool vorticity) {
-  for (auto* values : {&x, &y, &z, &vx, &vy, &vz, &solid, &wall_x, &wall_y, &wall_z, &lambda, &dx, &dy, &dz})
-    values->resize(size);
+  const auto far_away = [&](std::vector<float>& records, float where) {
+    records.resize(4 * (size + 1));
+    for (int k = 0; k < 3; ++k) records[4 * size + static_cast<std::size_t>(k)] = where;
+    records[4 * size + 3] = 0.0f;
+  };
+  far_away(place, 1e18f);
+  far_away(pressed, 1e18f);
+  far_away(velocity, 0.0f);
+  for (auto* values : {&solid, &wall_x, &wall_y, &wall_z, &dx, &dy, &dz}) values->resize(size);
   if (vorticity)
-    for (auto* values : {&curl_x, &curl_y, &curl_z, &curl}) values->resize(size);
+    for (auto* values : {&curl_x, &curl_y, &curl_z}) values->resize(size);
 }
 
 std::unique_ptr<FluidSolver> make_pbf_solver(const FluidOptions& options) {

@@ -23,18 +23,25 @@ struct PbfConstants {
 PbfConstants pbf_constants(const FluidOptions& options);
 
 /// The particles in sorted order; positions are those of the iterations, not those of the neighbours' grid.
+///
+/// Records are four floats a particle, those of a neighbour read at once, and one particle more, far away. No loop
+/// reads what it writes of others.
 struct PbfState {
-  std::vector<float> x, y, z;                       ///< m
-  std::vector<float> vx, vy, vz;                    ///< m/s
-  std::vector<float> solid;                         ///< of the relative density, what walls add
-  std::vector<float> wall_x, wall_y, wall_z;        ///< gradient of `solid`, 1/m
-  std::vector<float> lambda;                        ///< m^2
-  std::vector<float> dx, dy, dz;                    ///< m or m/s: what a loop found to add
-  std::vector<float> curl_x, curl_y, curl_z, curl;  ///< 1/s
+  std::vector<float> place;                   ///< records x, y, z (m), 0
+  std::vector<float> pressed;                 ///< records x, y, z (m), lambda (m^2); then with the curl's size (1/s)
+  std::vector<float> velocity;                ///< records vx, vy, vz (m/s), 0
+  std::vector<float> solid;                   ///< of the relative density, what walls add
+  std::vector<float> wall_x, wall_y, wall_z;  ///< gradient of `solid`, 1/m
+  std::vector<float> dx, dy, dz;              ///< m or m/s: what a loop found to add
+  std::vector<float> curl_x, curl_y, curl_z;  ///< 1/s
   void resize(std::size_t size, bool vorticity);
+  vec3 place_of(std::size_t i) const { return {place[4 * i], place[4 * i + 1], place[4 * i + 2]}; }
+  vec3 velocity_of(std::size_t i) const { return {velocity[4 * i], velocity[4 * i + 1], velocity[4 * i + 2]}; }
+  float lambda(std::size_t i) const { return pressed[4 * i + 3]; }
 };
 
-/// lambda = -C / (sum |grad C|^2 + epsilon) of C = rho / rho_0 - 1, where water is pressed.    [Macklin2013] eq. 1, 11
+/// lambda = -C / (sum |grad C|^2 + epsilon) of C = rho / rho_0 - 1, where water is pressed; from `place` to `pressed`.
+///                                                                                       [Macklin2013] eq. 1, 11
 void pbf_lambda(const PbfConstants& constants, const Neighbours& neighbours, PbfState& state, std::size_t begin,
                 std::size_t end);
 /// The neighbours' part of the change of position, with the artificial pressure.               [Macklin2013] eq. 14

@@ -53,9 +53,11 @@ class SphSolver final : public FluidSolver {
     over_pieces("density", [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const std::uint32_t given = neighbours_.grid().given_index(i);
-        state_.vx[i] = fluid.vx[given];
-        state_.vy[i] = fluid.vy[given];
-        state_.vz[i] = fluid.vz[given];
+        float* velocity = state_.records.data() + 8 * i + 4;
+        velocity[0] = fluid.vx[given];
+        velocity[1] = fluid.vy[given];
+        velocity[2] = fluid.vz[given];
+        velocity[3] = 0.0f;
         state_.solid[i] = solid_around(i);
       }
       sph_density(constants_, neighbours_, state_, begin, end);
@@ -85,8 +87,8 @@ class SphSolver final : public FluidSolver {
     const std::size_t piece = i / Neighbours::kPiece;
     const float mass = options_.rest_density * constants_.volume;
     const std::span<const Wall> walls = walls_.of(i);
-    const vec3 position = neighbours_.grid().position(i);
-    vec3 velocity{state_.vx[i], state_.vy[i], state_.vz[i]};
+    const vec3 position = state_.position(i);
+    vec3 velocity = state_.velocity(i);
     vec3 acceleration = outer + vec3{state_.ax[i], state_.ay[i], state_.az[i]};
     vec3 fall{0.0f};
     float bend = 0;
@@ -99,12 +101,12 @@ class SphSolver final : public FluidSolver {
     float distance[Boundary::kMostWalls];
     for (std::size_t w = 0; w < walls.size(); ++w) distance[w] = walls[w].distance;
     const WallShares shares = wall_shares(walls, distance, h);
-    const float pressure = pressure_over_density2(constants_.stiffness, state_.inverse_density[i]);
+    const float pressure = pressure_over_density2(constants_.stiffness, state_.inverse_density(i));
     for (std::size_t w = 0; w < walls.size(); ++w) {
       const Wall& wall = walls[w];
       const float push = pressure * shares.weight[w] * formulas::spiky_over_plane(wall.distance, h) +
                          kWallPush * constants_.stiffness * wall_barrier(wall.distance, options_.spacing);
-      const float drag = kWallFriction * constants_.kinematic * state_.inverse_density[i] * shares.weight[w] *
+      const float drag = kWallFriction * constants_.kinematic * state_.inverse_density(i) * shares.weight[w] *
                          formulas::viscosity_laplacian_beyond(wall.distance, h);
       const vec3 from_wall = push * wall.normal + drag * (wall.velocity - velocity);
       acceleration += from_wall;
@@ -117,7 +119,7 @@ class SphSolver final : public FluidSolver {
     // f = -sigma laplacian(c) n / |n|                                                  [Muller2003] eq. 19
     const float steepness = length(fall);
     if (steepness * h > kSurfaceGradient)
-      acceleration -= constants_.tension * state_.inverse_density[i] * bend / steepness * fall;
+      acceleration -= constants_.tension * state_.inverse_density(i) * bend / steepness * fall;
 
     velocity += dt * acceleration;
     const float speed = length(velocity), fastest = kFarthest * h / dt;
@@ -166,7 +168,10 @@ class SphSolver final : public FluidSolver {
 }  // namespace
 
 void SphState::resize(std::size_t size, bool tension) {
-  for (auto* values : {&vx, &vy, &vz, &solid, &inverse_density, &ax, &ay, &az}) values->resize(size);
+  records.resize(kStride * (size + 1));
+  const float nobody[kStride] = {1e18f, 1e18f, 1e18f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  std::copy_n(nobody, kStride, records.end() - kStride);
+  for (auto* values : {&solid, &ax, &ay, &az}) values->resize(size);
   if (tension)
     for (auto* values : {&nx, &ny, &nz, &bend}) values->resize(size);
 }

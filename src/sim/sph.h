@@ -31,12 +31,17 @@ SphConstants sph_constants(const FluidOptions& options);
 
 /// The particles in sorted order.
 struct SphState {
-  std::vector<float> vx, vy, vz;        ///< m/s
+  /// Eight floats a particle, those of a neighbour read at once: x, y, z (m), rest density over density, vx, vy, vz
+  /// (m/s), 0; and one particle more, far away.
+  std::vector<float> records;
   std::vector<float> solid;             ///< part of the support within walls
-  std::vector<float> inverse_density;   ///< rest density over density
   std::vector<float> ax, ay, az;        ///< m/s^2, of the forces between particles
   std::vector<float> nx, ny, nz, bend;  ///< with surface tension: gradient (1/m) and laplacian (1/m^2) of the colour
+  static constexpr int kStride = 8;
   void resize(std::size_t size, bool tension);
+  vec3 position(std::size_t i) const { return {records[8 * i], records[8 * i + 1], records[8 * i + 2]}; }
+  float inverse_density(std::size_t i) const { return records[8 * i + 3]; }
+  vec3 velocity(std::size_t i) const { return {records[8 * i + 4], records[8 * i + 5], records[8 * i + 6]}; }
 };
 
 /// p / rho^2 in units of rest_density = 1, from the inverse relative density; never negative.
@@ -44,7 +49,8 @@ inline float pressure_over_density2(float stiffness, float inverse_density) {
   return stiffness * std::max(inverse_density - inverse_density * inverse_density, 0.0f);
 }
 
-/// rho / rho_0 = solid + sum of spiky over the neighbours and the particle itself.          [Muller2003] eq. 3
+/// rho / rho_0 = solid + sum of spiky over the neighbours and the particle itself [Muller2003] eq. 3, and its record
+/// but for the velocity.
 void sph_density(const SphConstants& constants, const Neighbours& neighbours, SphState& state, std::size_t begin,
                  std::size_t end);
 /// Pressure and viscosity between particles, and the colour field's sums.

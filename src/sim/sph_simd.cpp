@@ -6,34 +6,20 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sim/records-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Tag = HWY_CAPPED(float, 16);
-using Vec = hn::Vec<Tag>;
-
-/// 1 / sqrt(v) to nearly float precision by one Newton step; v > 0.
-HWY_INLINE Vec reciprocal_root(Vec v) {
-  const Tag d;
-  const Vec guess = hn::ApproximateReciprocalSqrt(v);
-  const Vec half = hn::Mul(hn::Set(d, 0.5f), hn::Mul(v, guess));
-  return hn::Mul(guess, hn::NegMulAdd(half, guess, hn::Set(d, 1.5f)));
-}
-
-HWY_INLINE float sum_of(Vec v) { return hn::GetLane(hn::SumOfLanes(Tag(), v)); }
-
 template <bool kTension>
 HWY_INLINE void forces(const SphConstants& c, const Neighbours& neighbours, SphState& state, std::size_t begin,
                        std::size_t end) {
   const Tag d;
-  const hn::RebindToSigned<Tag> di;
   const std::size_t lanes = hn::Lanes(d);
-  const float *x = neighbours.grid().x(), *y = neighbours.grid().y(), *z = neighbours.grid().z();
-  const float *vx = state.vx.data(), *vy = state.vy.data(), *vz = state.vz.data(),
-              *inverse = state.inverse_density.data();
+  constexpr int kStride = SphState::kStride;
+  const float* records = state.records.data();
   const float h = c.h, h2 = h * h, h4 = h2 * h2;
   const Vec support = hn::Set(d, h), support2 = hn::Set(d, h2), zero = hn::Zero(d), tiny = hn::Set(d, 1e-12f * h2);
   const Vec stiffness = hn::Set(d, c.stiffness);
@@ -41,17 +27,18 @@ HWY_INLINE void forces(const SphConstants& c, const Neighbours& neighbours, SphS
   const float poly6 = 9.400088826365070f / (h4 * h4 * h) * c.volume;  // 945 / (32 pi h^9) volume
   for (std::size_t i = begin; i < end; ++i) {
     const NeighbourList list = neighbours.of(i);
-    const Vec px = hn::Set(d, x[i]), py = hn::Set(d, y[i]), pz = hn::Set(d, z[i]);
-    const Vec ux = hn::Set(d, vx[i]), uy = hn::Set(d, vy[i]), uz = hn::Set(d, vz[i]);
-    const Vec own_pressure = hn::Set(d, pressure_over_density2(c.stiffness, inverse[i]));
-    const Vec viscous = hn::Set(d, c.kinematic * inverse[i]);
+    const float* own = records + kStride * i;
+    const float inverse = own[3];
+    const Vec px = hn::Set(d, own[0]), py = hn::Set(d, own[1]), pz = hn::Set(d, own[2]);
+    const Vec ux = hn::Set(d, own[4]), uy = hn::Set(d, own[5]), uz = hn::Set(d, own[6]);
+    const Vec own_pressure = hn::Set(d, pressure_over_density2(c.stiffness, inverse));
+    const Vec viscous = hn::Set(d, c.kinematic * inverse);
     Vec ax = zero, ay = zero, az = zero, nx = zero, ny = zero, nz = zero, bend = zero;
     for (std::size_t k = 0; k < list.count; k += lanes) {
-      const auto j = hn::LoadU(di, list.index + k);
+      const Records place = load_records<kStride>(records, list.index + k);
+      const Records motion = load_records<kStride>(records + 4, list.index + k);
       const Vec r2 = hn::LoadU(d, list.r2 + k);
-      const Vec dx = hn::Sub(px, hn::GatherIndex(d, x, j)), dy = hn::Sub(py, hn::GatherIndex(d, y, j)),
-                dz = hn::Sub(pz, hn::GatherIndex(d, z, j));
-      const Vec inv = hn::GatherIndex(d, inverse, j);
+      const Vec dx = hn::Sub(px, place.a), dy = hn::Sub(py, place.b), dz = hn::Sub(pz, place.c), inv = place.d;
       const Vec per_r = reciprocal_root(hn::Max(r2, tiny));
       const Vec gap = hn::Max(hn::NegMulAdd(r2, per_r, support), zero);
       // (p_i / rho_i^2 + p_j / rho_j^2) |grad W| / r
@@ -59,9 +46,9 @@ HWY_INLINE void forces(const SphConstants& c, const Neighbours& neighbours, SphS
       const Vec push = hn::Mul(hn::Mul(pressure, per_r), hn::Mul(gap, gap));
       // mu / (rho_i rho_j) laplacian W
       const Vec drag = hn::Mul(hn::Mul(viscous, inv), gap);
-      ax = hn::MulAdd(push, dx, hn::MulAdd(drag, hn::Sub(hn::GatherIndex(d, vx, j), ux), ax));
-      ay = hn::MulAdd(push, dy, hn::MulAdd(drag, hn::Sub(hn::GatherIndex(d, vy, j), uy), ay));
-      az = hn::MulAdd(push, dz, hn::MulAdd(drag, hn::Sub(hn::GatherIndex(d, vz, j), uz), az));
+      ax = hn::MulAdd(push, dx, hn::MulAdd(drag, hn::Sub(motion.a, ux), ax));
+      ay = hn::MulAdd(push, dy, hn::MulAdd(drag, hn::Sub(motion.b, uy), ay));
+      az = hn::MulAdd(push, dz, hn::MulAdd(drag, hn::Sub(motion.c, uz), az));
       if (kTension) {
         const Vec s = hn::Max(hn::Sub(support2, r2), zero);
         const Vec weight = hn::Mul(s, inv);
@@ -79,7 +66,7 @@ HWY_INLINE void forces(const SphConstants& c, const Neighbours& neighbours, SphS
       state.nx[i] = poly6 * sum_of(nx);
       state.ny[i] = poly6 * sum_of(ny);
       state.nz[i] = poly6 * sum_of(nz);
-      state.bend[i] = -poly6 * (sum_of(bend) + 3.0f * h4 * inverse[i]);
+      state.bend[i] = -poly6 * (sum_of(bend) + 3.0f * h4 * inverse);
     }
   }
 }
@@ -89,6 +76,7 @@ HWY_INLINE void forces(const SphConstants& c, const Neighbours& neighbours, SphS
 void Density(const SphConstants& c, const Neighbours& neighbours, SphState& state, std::size_t begin, std::size_t end) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
+  const float *x = neighbours.grid().x(), *y = neighbours.grid().y(), *z = neighbours.grid().z();
   const float h2 = c.h * c.h;
   const Vec support = hn::Set(d, c.h), tiny = hn::Set(d, 1e-12f * h2);
   const float scale = 4.774648292756860f / (h2 * h2 * h2) * c.per_lattice;  // 15 / (pi h^6)
@@ -100,7 +88,11 @@ void Density(const SphConstants& c, const Neighbours& neighbours, SphState& stat
       const Vec s = hn::Max(hn::NegMulAdd(r2, reciprocal_root(hn::Max(r2, tiny)), support), hn::Zero(d));
       sum = hn::MulAdd(hn::Mul(s, s), s, sum);
     }
-    state.inverse_density[i] = 1.0f / (state.solid[i] + scale * (sum_of(sum) + h2 * c.h));
+    float* record = state.records.data() + SphState::kStride * i;
+    record[0] = x[i];
+    record[1] = y[i];
+    record[2] = z[i];
+    record[3] = 1.0f / (state.solid[i] + scale * (sum_of(sum) + h2 * c.h));
   }
 }
 

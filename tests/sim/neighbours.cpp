@@ -29,11 +29,14 @@ TEST(Neighbours, AreThoseOfBruteForce) {
     ASSERT_EQ(list.count, wanted.size());
     sum += list.count;
     for (std::size_t k = 0; k < (list.count + 15) / 16 * 16; ++k) {
-      const vec3 q = neighbours.grid().position(static_cast<std::size_t>(list.index[k]));
-      if (k < list.count)
+      const auto j = static_cast<std::size_t>(list.index[k]);
+      if (k < list.count) {
+        const vec3 q = neighbours.grid().position(j);
         EXPECT_NEAR(list.r2[k], dot(q - p, q - p), 1e-6f);
-      else
-        EXPECT_EQ(list.r2[k], h * h);
+      } else {
+        EXPECT_EQ(j, fluid.size());
+        EXPECT_EQ(list.r2[k], 4 * h * h);
+      }
     }
     EXPECT_FALSE(neighbours.coincident(i));
   }
