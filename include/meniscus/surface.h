@@ -18,7 +18,8 @@ struct SurfaceBuffers {
   Image<vec3> colour;         ///< linear; an empty image unless the particles carry colours
   Image<float> coverage;      ///< 1 where there is water, 0 elsewhere; fractions only after averaging
   bool eye_in_water = false;  ///< rays start inside: depth is where they leave the water
-  /// Where each pixel's ray may first and last meet water, m along the ray; what refine() starts from.
+  /// Where each pixel's ray may first and last meet water, m along the ray; what refine() starts from. Empty where that
+  /// does not need them.
   Image<float> entry, exit;
 };
 
@@ -303,7 +304,8 @@ void adapt(HeightField& field, std::span<const PlaneAdaptation> planes);
 /// The water between floor and heights as a surface; it can be marched.
 /// @param sides  whether the water's vertical sides at the border of the field and of holes are surface too: false only
 ///               where solid walls stand there that are never seen through
-std::unique_ptr<Surface> make_height_field_surface(HeightField field, bool sides = true);
+/// @param want_thickness  false: see() leaves the thickness zero; thickness() still tells it
+std::unique_ptr<Surface> make_height_field_surface(HeightField field, bool sides = true, bool want_thickness = true);
 
 // --- Particles as they are ---------------------------------------------------------------------------------
 

@@ -49,6 +49,13 @@ class HeightFieldBody {
  public:
   explicit HeightFieldBody(const HeightField& field);
 
+  /// Where the field lies: its axes in a vec3, its first point in m and columns per m.
+  struct Frame {
+    int a = 0, b = 2, up = 1;
+    double low_a = 0, low_b = 0, per_a = 1, per_b = 1;
+  };
+  const Frame& frame() const { return frame_; }
+
   bool empty() const { return cells_a_ == 0; }
   int cells_a() const { return cells_a_; }
   int cells_b() const { return cells_b_; }
@@ -98,8 +105,7 @@ class HeightFieldBody {
   int cells_a_ = 0, cells_b_ = 0;
   float floor_ = 0, top_ = 0;
   bool holes_ = false;
-  int axis_a_ = 0, axis_b_ = 2, axis_up_ = 1;
-  double low_a_ = 0, low_b_ = 0, per_a_ = 1, per_b_ = 1;
+  Frame frame_;
   std::vector<float> heights_;
   std::vector<std::uint8_t> water_;
   std::vector<Kind> kinds_;

@@ -2,7 +2,8 @@
 #include <fmt/format.h>
 #include <cmath>
 
-#include "surface/height_field_rays.h"
+#include "surface/height_field_packet.h"
+#include "surface/packet_rays.h"
 
 namespace meniscus {
 namespace {
@@ -35,14 +36,25 @@ HeightField checked(HeightField field) {
 
 class HeightFieldSurface final : public Surface {
  public:
-  HeightFieldSurface(HeightField field, bool sides) : rays_(checked(std::move(field)), sides) {}
+  HeightFieldSurface(HeightField field, bool sides, bool want_thickness)
+      : rays_(checked(std::move(field)), sides), want_thickness_(want_thickness) {}
 
   SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "march");
     SurfaceBuffers seen = blank(view, points);
     seen.eye_in_water = view.projection != Projection::orthographic &&
                         rays_.body().inside(rays_.body().field_ray({view.eye, view.forward}), 0);
-    for_each_ray(view, points, [&](std::size_t i, const Ray& ray) { look(view, ray, i, seen); });
+    if (seen.eye_in_water)
+      for_each_ray(view, points, [&](std::size_t i, const Ray& ray) { look(view, ray, i, seen); });
+    else if (!points.empty())
+      parallel_for(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        PacketRays rays;
+        for (std::size_t i = begin; i < end; i += kPacket)
+          look(view, rays, point_rays(view, points, i, rays), seen,
+               [&](int l) { return i + static_cast<std::size_t>(l); });
+      });
+    else
+      look_at_picture(view, seen);
     return seen;
   }
 
@@ -91,8 +103,6 @@ class HeightFieldSurface final : public Surface {
     seen.normal = image_of(view, points, vec3{0.0f});
     seen.thickness = image_of(view, points, 0.0f);
     seen.coverage = image_of(view, points, 0.0f);
-    seen.entry = image_of(view, points, kInfinity);
-    seen.exit = image_of(view, points, -kInfinity);
     if (!rays_.field().colour.empty()) seen.colour = image_of(view, points, vec3{0.0f});
     return seen;
   }
@@ -114,12 +124,61 @@ class HeightFieldSurface final : public Surface {
     });
   }
 
+  void look_at_picture(const View& view, SurfaceBuffers& seen) const {
+    const int rows = (view.height + kPacketHeight - 1) / kPacketHeight;
+    const auto width = static_cast<std::size_t>(view.width);
+    parallel_for(static_cast<std::size_t>(rows), 4, [&](std::size_t begin, std::size_t end) {
+      PacketRays rays;
+      for (int y = static_cast<int>(begin) * kPacketHeight; y < static_cast<int>(end) * kPacketHeight;
+           y += kPacketHeight)
+        for (int x = 0; x < view.width; x += kPacketWidth) {
+          const PacketMask mask = picture_rays(view, x, y, rays);
+          const std::size_t first = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+          look(view, rays, mask, seen, [&](int l) {
+            return first + static_cast<std::size_t>(l / kPacketWidth) * width +
+                   static_cast<std::size_t>(l % kPacketWidth);
+          });
+        }
+    });
+  }
+
+  /// @param index  of a lane's pixel or point
+  template <class Index>
+  void look(const View& view, const PacketRays& rays, PacketMask mask, SurfaceBuffers& seen, Index index) const {
+    FieldHits hits;
+    enter_packet(rays_, rays, mask, want_thickness_, hits);
+    for (PacketMask rest = hits.hit; rest != 0; rest &= rest - 1) {
+      const int l = __builtin_ctz(rest);
+      const std::size_t i = index(l);
+      seen.depth[i] = hits.depth[l];
+      const float* normal = hits.normal + 3 * l;
+      seen.normal[i] = {normal[0], normal[1], normal[2]};
+      seen.coverage[i] = 1.0f;
+      if (want_thickness_) seen.thickness[i] = hits.thickness[l];
+      if (!seen.colour.empty())
+        seen.colour[i] = rays_.colour(rays_.body().field_ray(ray(rays, l)), static_cast<double>(hits.depth[l]));
+    }
+    for (PacketMask rest = hits.unmeasured; rest != 0; rest &= rest - 1) {
+      const int l = __builtin_ctz(rest);
+      const FieldRay in_field = rays_.body().field_ray(ray(rays, l));
+      const FieldStretch stretch = rays_.body().clipped(in_field, static_cast<double>(hits.depth[l]), kInfinity);
+      seen.thickness[index(l)] = static_cast<float>(rays_.body().length(in_field, stretch.begin, stretch.end));
+    }
+    for (PacketMask rest = hits.unsettled; rest != 0; rest &= rest - 1) {
+      const int l = __builtin_ctz(rest);
+      look(view, ray(rays, l), index(l), seen);
+    }
+  }
+
+  static Ray ray(const PacketRays& rays, int l) {
+    return {{rays.ox[l], rays.oy[l], rays.oz[l]}, {rays.dx[l], rays.dy[l], rays.dz[l]}};
+  }
+
+  /// One ray by itself.
   void look(const View& view, const Ray& ray, std::size_t i, SurfaceBuffers& seen) const {
     const FieldRay in_field = rays_.body().field_ray(ray);
     const FieldStretch stretch = rays_.body().clipped(in_field, 0, static_cast<double>(kInfinity));
     if (!stretch.found()) return;
-    seen.entry[i] = static_cast<float>(stretch.begin);
-    seen.exit[i] = static_cast<float>(stretch.end);
     FieldChange change;
     if (seen.eye_in_water)
       change = rays_.leave(in_field, 0, static_cast<double>(kInfinity));
@@ -128,7 +187,7 @@ class HeightFieldSurface final : public Surface {
     else
       change = rays_.enter(in_field, stretch, static_cast<double>(kInfinity));
     const double from = seen.eye_in_water || !change.found() ? stretch.begin : change.t;
-    seen.thickness[i] = static_cast<float>(rays_.body().length(in_field, from, stretch.end));
+    if (want_thickness_) seen.thickness[i] = static_cast<float>(rays_.body().length(in_field, from, stretch.end));
     if (!change.found()) return;
     seen.depth[i] = static_cast<float>(std::max(change.t, 0.0));
     seen.normal[i] = rays_.normal(ray, in_field, change, !seen.eye_in_water);
@@ -137,12 +196,13 @@ class HeightFieldSurface final : public Surface {
   }
 
   HeightFieldRays rays_;
+  bool want_thickness_;
 };
 
 }  // namespace
 
-std::unique_ptr<Surface> make_height_field_surface(HeightField field, bool sides) {
-  return std::make_unique<HeightFieldSurface>(std::move(field), sides);
+std::unique_ptr<Surface> make_height_field_surface(HeightField field, bool sides, bool want_thickness) {
+  return std::make_unique<HeightFieldSurface>(std::move(field), sides, want_thickness);
 }
 
 }  // namespace meniscus
