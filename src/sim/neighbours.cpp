@@ -45,6 +45,7 @@ struct NeighbourSearch {
     Neighbours::Lists& lists = all.lists_[begin / Neighbours::kPiece];
     static thread_local Candidates candidates;
     std::size_t used = 0;
+    lists.groups.clear();
     for (std::size_t group = begin; group < end;) {
       // Particles of one cell share their candidates: those near the box around them, half of what is in the cells.
       const vec3 p = grid.position(group);
@@ -53,6 +54,7 @@ struct NeighbourSearch {
       const std::size_t group_end = std::max(group + 1, std::min({cell_end, end, group + kMostTogether}));
       Bounds box;
       for (std::size_t i = group; i < group_end; ++i) box.add(grid.position(i));
+      lists.groups.push_back({group, group_end, box});
       candidates.gather(grid, around(own), box, h);
       lists.reserve(used + (group_end - group) * (candidates.count + 32) + 64, used);
       for (std::size_t i = group; i < group_end; ++i) {

@@ -10,7 +10,8 @@
 namespace meniscus {
 
 /// The neighbours of one particle, itself left out. Lists are filled up to whole vectors of 16 with the index size() at
-/// the squared distance 4 h^2, where the kernels vanish: the loops over pairs keep one particle more, far away from all.
+/// the squared distance 4 h^2, where the kernels vanish: the loops over pairs keep one particle more, far away from
+/// all.
 struct NeighbourList {
   const std::int32_t* index;  ///< in sorted order
   const float* r2;            ///< m^2, at the time of the search
@@ -34,6 +35,13 @@ class Neighbours {
     const Lists& lists = lists_[sorted / kPiece];
     return {lists.index.get() + first_[sorted], lists.r2.get() + first_[sorted], count_[sorted]};
   }
+  /// Particles begin .. end that are close together, and the box around them.
+  struct Group {
+    std::size_t begin, end;
+    Bounds box;
+  };
+  /// All particles of a piece in groups, in sorted order.
+  const std::vector<Group>& groups(std::size_t piece) const { return lists_[piece].groups; }
   /// Whether another particle is in the same point, so that no force can part the two.
   bool coincident(std::size_t sorted) const { return coincident_[sorted] != 0; }
   float mean() const;
@@ -44,6 +52,7 @@ class Neighbours {
     std::unique_ptr<std::int32_t[]> index;
     std::unique_ptr<float[]> r2;
     std::size_t capacity = 0;
+    std::vector<Group> groups;
     void reserve(std::size_t wanted, std::size_t used);
   };
   Particles positions_;

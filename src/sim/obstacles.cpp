@@ -164,6 +164,17 @@ void Obstacles::rebuild() {
   for (std::size_t i = 0; i < obstacles_.size(); ++i)
     if (obstacles_[i].present) boxes[i] = bounds(i).grown(reach_ * 1.0001f);
   grid_.build(boxes);
+  std::erase_if(boxes, [](const Bounds& box) { return box.empty(); });
+  constexpr std::size_t kMostBoxes = 16;
+  if (boxes.size() > kMostBoxes) {
+    Bounds around;
+    for (const Bounds& box : boxes) {
+      around.add(box.low);
+      around.add(box.high);
+    }
+    boxes = {around};
+  }
+  boxes_ = std::move(boxes);
 }
 
 }  // namespace meniscus

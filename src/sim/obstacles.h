@@ -66,6 +66,7 @@ class Obstacles final : public Boundary {
   Bounds bounds(std::size_t i) const;
 
   int walls_near(vec3 point, float reach, Wall (&walls)[kMostWalls]) const override;
+  bool may_touch(const Bounds& box, float reach) const override;
   std::size_t bodies() const override { return obstacles_.size(); }
   vec3 centre(std::size_t body) const override { return obstacles_[body].body.pose.position; }
 
@@ -85,6 +86,7 @@ class Obstacles final : public Boundary {
   float most_speed_ = std::numeric_limits<float>::infinity();
   std::vector<Obstacle> obstacles_;
   ObstacleGrid grid_;
+  std::vector<Bounds> boxes_;  ///< of those that are there, with reach_; where there are many, the box around all
 };
 
 }  // namespace meniscus

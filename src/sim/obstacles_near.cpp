@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "sim/obstacles.h"
 
@@ -44,6 +45,18 @@ int Obstacles::walls_near(vec3 point, float reach, Wall (&walls)[kMostWalls]) co
   if (count == kMostWalls)
     std::stable_sort(walls, walls + count, [](const Wall& a, const Wall& b) { return a.distance < b.distance; });
   return count;
+}
+
+bool Obstacles::may_touch(const Bounds& box, float reach) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.low[axis] - tank_.low[axis] <= reach) return true;
+    if (tank_.high[axis] - box.high[axis] <= reach && axis != static_cast<int>(up_)) return true;
+  }
+  if (reach > reach_) return true;
+  const auto touches = [&](const Bounds& other) {
+    return glm::all(glm::lessThanEqual(box.low, other.high)) && glm::all(glm::lessThanEqual(other.low, box.high));
+  };
+  return std::any_of(boxes_.begin(), boxes_.end(), touches);
 }
 
 void Obstacles::add_wall(const Obstacle& obstacle, int index, vec3 point, float reach, Wall (&walls)[kMostWalls],

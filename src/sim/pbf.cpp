@@ -126,7 +126,7 @@ class PbfSolver final : public FluidSolver {
   /// Out of bodies only so far at once, lest one that appears within the water throws it about.
   float limited(const Wall& wall, float way) const { return wall.body < 0 ? way : std::min(way, options_.spacing); }
 
-  /// The walls' part of the density and of its gradient, where the particle is now.
+  /// The walls' part of the density and of its gradient, where the particle is now; keeps the slopes of each wall's.
   void feel_walls(std::size_t i) {
     const std::span<const Wall> walls = walls_.of(i);
     float solid = 0;
@@ -136,9 +136,12 @@ class PbfSolver final : public FluidSolver {
       distances(walls, i, distance);
       const WallShares shares = wall_shares(walls, distance, constants_.h);
       solid = constants_.solid * shares.solid;
-      for (std::size_t w = 0; w < walls.size(); ++w)
-        gradient -= constants_.solid * shares.weight[w] * formulas::spiky_over_plane(distance[w], constants_.h) *
-                    walls[w].normal;
+      const float per_h = 1.0f / constants_.h;
+      float* slope = walls_.kept(i);
+      for (std::size_t w = 0; w < walls.size(); ++w) {
+        slope[w] = constants_.solid * shares.weight[w] * per_h * formulas::spiky_over_plane(distance[w] * per_h, 1.0f);
+        gradient -= slope[w] * walls[w].normal;
+      }
     }
     state_.solid[i] = solid;
     state_.wall_x[i] = gradient.x;
@@ -166,17 +169,16 @@ class PbfSolver final : public FluidSolver {
       const vec3 centre = neighbours_.grid().position(i);
       float distance[Boundary::kMostWalls];
       distances(walls, i, distance);
-      const WallShares shares = wall_shares(walls, distance, constants_.h);
       const auto push = [&](const Wall& wall, vec3 out) {
         now += out;
         if (wall.body >= 0) impulses_.add(i / Neighbours::kPiece, boundary, wall.body, -mass_rate * out, before);
       };
+      const float* slope = walls_.kept(i);
       // The slope of the particle's own constraint, as for its neighbours, and the walls' own push. (To count lambda
       // twice, as if the water beyond the wall were pressed as well, feeds energy in: water at rest then boils.)
       for (std::size_t w = 0; w < walls.size(); ++w) {
-        const float slope = constants_.solid * shares.weight[w] * formulas::spiky_over_plane(distance[w], constants_.h);
         const float own = kWallPush * constants_.h * constants_.h * wall_barrier(distance[w], options_.spacing);
-        push(walls[w], std::min(own - state_.lambda(i) * slope, farthest) * walls[w].normal);
+        push(walls[w], std::min(own - state_.lambda(i) * slope[w], farthest) * walls[w].normal);
       }
       for (int pass = 0; pass < (walls.size() > 1 ? 3 : 1); ++pass)
         for (const Wall& wall : walls) {

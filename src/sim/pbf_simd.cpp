@@ -75,7 +75,8 @@ void Change(const PbfConstants& c, const Neighbours& neighbours, PbfState& state
     for_neighbours(c, neighbours, state.pressed, i,
                    [&](const std::int32_t*, Vec lambda, Vec x, Vec y, Vec z, Vec, Vec gap, Vec per_r) HWY_ATTR {
                      // s_corr = -k (W(r) / W(0.2 h))^4 with the spiky kernel: the twelfth power of the gap.
-                     const Vec part = hn::Mul(gap, unit);
+                     // Where that is less than nothing to a float it stays so, for subnormal numbers are slow.
+                     const Vec part = hn::Max(hn::Mul(gap, unit), hn::Set(d, 0.05f));
                      const Vec cube = hn::Mul(part, hn::Mul(part, part)), sixth = hn::Mul(cube, cube);
                      const Vec both = hn::Add(own, lambda);
                      const Vec strength = hn::NegMulAdd(apart, hn::Mul(sixth, sixth), both);

@@ -9,7 +9,7 @@
 namespace meniscus {
 namespace {
 
-constexpr int kCells = 32;                ///< of the grid along the longest edge: at most 37^3 floats
+constexpr int kCells = 32;                 ///< of the grid along the longest edge: at most 37^3 floats
 constexpr std::size_t kTouchPoints = 256;  ///< corners that touch other bodies
 
 /// Distances at the nodes of a grid bound those of all points: they change by no more than the way between two points.

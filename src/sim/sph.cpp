@@ -73,12 +73,15 @@ class SphSolver final : public FluidSolver {
     impulses_.add_to(impulses);
   }
 
-  float solid_around(std::size_t i) const {
+  /// Keeps the walls' weights.
+  float solid_around(std::size_t i) {
     const std::span<const Wall> walls = walls_.of(i);
     if (walls.empty()) return 0.0f;
     float distance[Boundary::kMostWalls];
     for (std::size_t w = 0; w < walls.size(); ++w) distance[w] = walls[w].distance;
-    return constants_.solid * wall_shares(walls, distance, constants_.h).solid;
+    const WallShares shares = wall_shares(walls, distance, constants_.h);
+    std::copy_n(shares.weight, walls.size(), walls_.kept(i));
+    return constants_.solid * shares.solid;
   }
 
   /// Speed first, then place: symplectic, the leapfrog with speeds half a step late.
@@ -98,22 +101,21 @@ class SphSolver final : public FluidSolver {
     }
 
     // Walls push with the pressure of the particle and their own, and drag.
-    float distance[Boundary::kMostWalls];
-    for (std::size_t w = 0; w < walls.size(); ++w) distance[w] = walls[w].distance;
-    const WallShares shares = wall_shares(walls, distance, h);
-    const float pressure = pressure_over_density2(constants_.stiffness, state_.inverse_density(i));
+    const float* weight = walls_.kept(i);
+    const float pressure = pressure_over_density2(constants_.stiffness, state_.inverse_density(i)), per_h = 1.0f / h;
     for (std::size_t w = 0; w < walls.size(); ++w) {
       const Wall& wall = walls[w];
-      const float push = pressure * shares.weight[w] * formulas::spiky_over_plane(wall.distance, h) +
+      const float q = wall.distance * per_h;
+      const float push = pressure * weight[w] * per_h * formulas::spiky_over_plane(q, 1.0f) +
                          kWallPush * constants_.stiffness * wall_barrier(wall.distance, options_.spacing);
-      const float drag = kWallFriction * constants_.kinematic * state_.inverse_density(i) * shares.weight[w] *
-                         formulas::viscosity_laplacian_beyond(wall.distance, h);
+      const float drag = kWallFriction * constants_.kinematic * state_.inverse_density(i) * weight[w] * per_h * per_h *
+                         formulas::viscosity_laplacian_beyond(q, 1.0f);
       const vec3 from_wall = push * wall.normal + drag * (wall.velocity - velocity);
       acceleration += from_wall;
       if (wall.body >= 0) impulses_.add(piece, boundary, wall.body, -mass * dt * from_wall, position);
       if (constants_.tension > 0) {
-        fall -= shares.weight[w] * formulas::poly6_over_plane(wall.distance, h) * wall.normal;
-        bend += shares.weight[w] * formulas::poly6_laplacian_beyond(wall.distance, h);
+        fall -= weight[w] * per_h * formulas::poly6_over_plane(q, 1.0f) * wall.normal;
+        bend += weight[w] * per_h * per_h * formulas::poly6_laplacian_beyond(q, 1.0f);
       }
     }
     // f = -sigma laplacian(c) n / |n|                                                  [Muller2003] eq. 19

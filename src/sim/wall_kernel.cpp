@@ -9,43 +9,55 @@ namespace meniscus {
 void NearWalls::find(const Boundary& boundary, const Neighbours& neighbours, float h) {
   first_.resize(neighbours.size());
   count_.resize(neighbours.size());
-  if (walls_.size() < neighbours.pieces()) walls_.resize(neighbours.pieces());
+  if (walls_.size() < neighbours.pieces()) {
+    walls_.resize(neighbours.pieces());
+    kept_.resize(neighbours.pieces());
+  }
   const ParticleGrid& grid = neighbours.grid();
   parallel_for(neighbours.size(), Neighbours::kPiece, [&](std::size_t begin, std::size_t end) {
     std::vector<Wall>& found = walls_[begin / Neighbours::kPiece];
     found.clear();
     Wall walls[Boundary::kMostWalls];
-    for (std::size_t i = begin; i < end; ++i) {
-      const int count = boundary.walls_near(grid.position(i), h, walls);
-      first_[i] = static_cast<std::uint32_t>(found.size());
-      count_[i] = static_cast<std::uint8_t>(count);
-      found.insert(found.end(), walls, walls + count);
+    std::fill(first_.begin() + static_cast<std::ptrdiff_t>(begin), first_.begin() + static_cast<std::ptrdiff_t>(end),
+              0u);
+    std::fill(count_.begin() + static_cast<std::ptrdiff_t>(begin), count_.begin() + static_cast<std::ptrdiff_t>(end),
+              std::uint8_t{0});
+    for (const Neighbours::Group& group : neighbours.groups(begin / Neighbours::kPiece)) {
+      if (!boundary.may_touch(group.box, h)) continue;
+      for (std::size_t i = group.begin; i < group.end; ++i) {
+        const int count = boundary.walls_near(grid.position(i), h, walls);
+        first_[i] = static_cast<std::uint32_t>(found.size());
+        count_[i] = static_cast<std::uint8_t>(count);
+        found.insert(found.end(), walls, walls + count);
+      }
     }
+    kept_[begin / Neighbours::kPiece].resize(found.size());
   });
 }
 
 WallShares wall_shares(std::span<const Wall> walls, const float* distance, float h) {
   WallShares shares;
   float part[Boundary::kMostWalls];
-  for (std::size_t a = 0; a < walls.size(); ++a) part[a] = formulas::spiky_beyond(distance[a], h);
+  const float per_h = 1.0f / h;
+  for (std::size_t a = 0; a < walls.size(); ++a) part[a] = formulas::spiky_beyond(distance[a] * per_h, 1.0f);
   for (std::size_t a = 0; a < walls.size(); ++a) {
     // The part of this wall's solid that is in none before it; exact for perpendicular walls through one point.
     float own = part[a];
     shares.weight[a] = 1.0f;
     for (std::size_t b = 0; b < walls.size(); ++b) {
-      if (b == a) continue;
+      if (b == a || part[b] == 0.0f) continue;
       const float cosine = glm::dot(walls[a].normal, walls[b].normal);
+      if (cosine == 0.0f) {  // most walls are perpendicular: what is below comes to this
+        shares.weight[a] *= 1.0f - part[b];
+        if (b < a) own *= 1.0f - part[b];
+        continue;
+      }
       shares.weight[a] *= 1.0f - formulas::beyond_both_slope(part[a], part[b], cosine);
       if (b < a && part[a] > 0.0f) own *= 1.0f - formulas::beyond_both(part[a], part[b], cosine) / part[a];
     }
     shares.solid += own;
   }
   return shares;
-}
-
-float wall_barrier(float distance, float spacing) {
-  const float depth = std::max(1.0f - distance / (kBarrier_rel * spacing), 0.0f);
-  return depth * depth / spacing;
 }
 
 vec3 some_direction(std::uint32_t number) {

@@ -24,9 +24,13 @@ class NearWalls {
   std::span<const Wall> of(std::size_t sorted) const {
     return {walls_[sorted / Neighbours::kPiece].data() + first_[sorted], count_[sorted]};
   }
+  /// One number for each of these walls, which the solver keeps there.
+  float* kept(std::size_t sorted) { return kept_[sorted / Neighbours::kPiece].data() + first_[sorted]; }
+  const float* kept(std::size_t sorted) const { return kept_[sorted / Neighbours::kPiece].data() + first_[sorted]; }
 
  private:
   std::vector<std::vector<Wall>> walls_;
+  std::vector<std::vector<float>> kept_;
   std::vector<std::uint32_t> first_;
   std::vector<std::uint8_t> count_;
 };
@@ -42,7 +46,11 @@ WallShares wall_shares(std::span<const Wall> walls, const float* distance, float
 /// How hard a wall pushes by itself, 1/m, to be multiplied by the square of the speed of sound; zero beyond
 /// kBarrier_rel spacings. It carries the half of the pressure that the water across the wall would have had, as it is
 /// in none of the particles' energies: the wall's push stays the slope of a potential, and water comes to rest.
-float wall_barrier(float distance, float spacing);
+inline float wall_barrier(float distance, float spacing) {
+  if (distance >= kBarrier_rel * spacing) return 0.0f;
+  const float depth = 1.0f - distance / (kBarrier_rel * spacing);
+  return depth * depth / spacing;
+}
 
 /// A unit vector that depends on the number alone: parts particles that are in one point.
 vec3 some_direction(std::uint32_t number);
