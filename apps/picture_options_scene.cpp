@@ -48,7 +48,10 @@ void PictureArguments::add_light(CLI::App& command) {
         p.caustics_options.simple_b = abc.y;
         p.caustics_options.simple_c = abc.z;
       },
-      "Weights of height, gradient and the constant in simple caustics (default: 0.6,1.5,0.5)");
+      "Weights of height, gradient and the constant in simple caustics (default: 1.5,-0.8,0.35)");
+  group.flag(
+      "--simple-as-published", [](PictureOptions& p) { p.caustics_options.simple_keeps_mean = false; },
+      "Simple caustics are not scaled to the light that arrives under still water");
   group.flag(
       "--no-wall-light", [](PictureOptions& p) { p.caustics_options.on_walls = false; },
       "No light mirrored by the water onto what stands above it");

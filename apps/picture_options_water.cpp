@@ -140,6 +140,14 @@ void PictureArguments::add_eyes(CLI::App& command) {
       "--eye-map", "PIXELS",
       [](PictureOptions& p, int v) { p.optics.eyes.map_size = in_range("--eye-map", v, 8, 4096); },
       "Edge of a face of the cube maps, px (default: by the picture)");
+  group.text(
+      "--eye-lookup", "position|direction",
+      [](PictureOptions& p, const std::string& name) {
+        if (name != "position" && name != "direction")
+          throw UsageError("--eye-lookup: position or direction was expected, not '" + name + "'");
+        p.optics.eyes.object_position = p.optics.eyes.static_position = name == "position";
+      },
+      "How maps are looked into: by where a ray passes, or by its direction alone, as published");
   group.flag(
       "--no-displaced-eye", [](PictureOptions& p) { p.optics.eyes.displaced_eye = false; },
       "Maps are drawn from the eye itself");
