@@ -1,6 +1,8 @@
 // The water under a height field as a surface: what is seen of it is found by rays.
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "surface/height_field_packet.h"
 #include "surface/packet_rays.h"
@@ -50,8 +52,7 @@ class HeightFieldSurface final : public Surface {
       parallel_for(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
         PacketRays rays;
         for (std::size_t i = begin; i < end; i += kPacket)
-          look(view, rays, point_rays(view, points, i, rays), seen,
-               [&](int l) { return i + static_cast<std::size_t>(l); });
+          look(view, rays, point_rays(view, points, i, rays), seen, i, kPacketWidth);
       });
     else
       look_at_picture(view, seen);
@@ -133,41 +134,56 @@ class HeightFieldSurface final : public Surface {
            y += kPacketHeight)
         for (int x = 0; x < view.width; x += kPacketWidth) {
           const PacketMask mask = picture_rays(view, x, y, rays);
-          const std::size_t first = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-          look(view, rays, mask, seen, [&](int l) {
-            return first + static_cast<std::size_t>(l / kPacketWidth) * width +
-                   static_cast<std::size_t>(l % kPacketWidth);
-          });
+          look(view, rays, mask, seen, static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x), width);
         }
     });
   }
 
-  /// @param index  of a lane's pixel or point
-  template <class Index>
-  void look(const View& view, const PacketRays& rays, PacketMask mask, SurfaceBuffers& seen, Index index) const {
+  /// Sixteen rays: lane l is pixel or point first + l % 8 + (l / 8) stride.
+  void look(const View& view, const PacketRays& rays, PacketMask mask, SurfaceBuffers& seen, std::size_t first,
+            std::size_t stride) const {
+    const auto index = [&](int l) {
+      return first + static_cast<std::size_t>(l / kPacketWidth) * stride + static_cast<std::size_t>(l % kPacketWidth);
+    };
     FieldHits hits;
     enter_packet(rays_, rays, mask, want_thickness_, hits);
-    for (PacketMask rest = hits.hit; rest != 0; rest &= rest - 1) {
-      const int l = __builtin_ctz(rest);
-      const std::size_t i = index(l);
-      seen.depth[i] = hits.depth[l];
-      const float* normal = hits.normal + 3 * l;
-      seen.normal[i] = {normal[0], normal[1], normal[2]};
-      seen.coverage[i] = 1.0f;
-      if (want_thickness_) seen.thickness[i] = hits.thickness[l];
-      if (!seen.colour.empty())
-        seen.colour[i] = rays_.colour(rays_.body().field_ray(ray(rays, l)), static_cast<double>(hits.depth[l]));
+    for (int l = 0; l < kPacket; l += kPacketWidth) {
+      const PacketMask row = (hits.hit >> l) & ((1u << kPacketWidth) - 1u);
+      if (row == 0) continue;
+      if (row == (1u << kPacketWidth) - 1u)
+        keep(hits, l, std::integral_constant<int, kPacketWidth>(), seen, index(l));
+      else
+        for (PacketMask rest = row; rest != 0; rest &= rest - 1) {
+          const int k = l + __builtin_ctz(rest);
+          keep(hits, k, std::integral_constant<int, 1>(), seen, index(k));
+        }
     }
-    for (PacketMask rest = hits.unmeasured; rest != 0; rest &= rest - 1) {
-      const int l = __builtin_ctz(rest);
+    if (!seen.colour.empty())
+      for_each_lane(hits.hit, [&](int l) {
+        seen.colour[index(l)] = rays_.colour(rays_.body().field_ray(ray(rays, l)), static_cast<double>(hits.depth[l]));
+      });
+    for_each_lane(hits.unmeasured, [&](int l) {
       const FieldRay in_field = rays_.body().field_ray(ray(rays, l));
-      const FieldStretch stretch = rays_.body().clipped(in_field, static_cast<double>(hits.depth[l]), kInfinity);
+      const FieldStretch stretch =
+          rays_.body().clipped(in_field, static_cast<double>(hits.depth[l]), static_cast<double>(kInfinity));
       seen.thickness[index(l)] = static_cast<float>(rays_.body().length(in_field, stretch.begin, stretch.end));
-    }
-    for (PacketMask rest = hits.unsettled; rest != 0; rest &= rest - 1) {
-      const int l = __builtin_ctz(rest);
-      look(view, ray(rays, l), index(l), seen);
-    }
+    });
+    for_each_lane(hits.unsettled, [&](int l) { look(view, ray(rays, l), index(l), seen); });
+  }
+
+  /// Writes `Count` lanes from lane l on to the pixels from i on.
+  template <int Count>
+  void keep(const FieldHits& hits, int l, std::integral_constant<int, Count>, SurfaceBuffers& seen,
+            std::size_t i) const {
+    std::copy_n(hits.depth + l, Count, seen.depth.data() + i);
+    std::copy_n(hits.normal + 3 * l, 3 * Count, &seen.normal[i].x);
+    std::fill_n(seen.coverage.data() + i, Count, 1.0f);
+    if (want_thickness_) std::copy_n(hits.thickness + l, Count, seen.thickness.data() + i);
+  }
+
+  template <class Visit>
+  static void for_each_lane(PacketMask mask, Visit visit) {
+    for (; mask != 0; mask &= mask - 1) visit(__builtin_ctz(mask));
   }
 
   static Ray ray(const PacketRays& rays, int l) {
