@@ -1,4 +1,4 @@
-/// What holds for either solver: each test of sph.cpp and pbf.cpp names the solver and its own bounds.
+/// Water and its solver as the tests of both take them.
 #pragma once
 
 #include <cmath>
