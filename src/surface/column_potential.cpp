@@ -102,31 +102,34 @@ float ColumnPotential::highest(const Bins& bins, const Near& near) const {
 
 void ColumnPotential::gather(const Bins& bins, float a, float b, float down_to, Near& near) const {
   const float per_reach2 = 1.0f / (options_.reach * options_.reach);
-  while (!near.weight.empty() && near.weight.back() < 0) {  // the padding
-    near.weight.pop_back();
-    near.z.pop_back();
-    near.index.pop_back();
-  }
   std::size_t n = 0;
   for (int j = bins.j0; j <= bins.j1; ++j)
     for (int i = bins.i0; i <= bins.i1; ++i, ++n) {
       const std::size_t bin =
           static_cast<std::size_t>(j) * static_cast<std::size_t>(bins_a_) + static_cast<std::size_t>(i);
       std::size_t& at = near.next[n];
-      for (; at < start_[bin + 1] && entries_[at].z > down_to; ++at) {
+      const std::size_t end = start_[bin + 1];
+      if (at == end) continue;
+      if (near.count + (end - at) + kLanes > near.weight.size()) {
+        near.weight.resize(2 * (near.count + (end - at) + kLanes));
+        near.z.resize(near.weight.size());
+      }
+      // Each is written, and kept by counting it: about half of them are, in no order that branches could foresee.
+      float *weights = near.weight.data(), *places = near.z.data();
+      std::size_t count = near.count;
+      for (; at < end && entries_[at].z > down_to; ++at) {
         const Entry& entry = entries_[at];
         const float da = entry.a - a, db = entry.b - b;
         const float weight = 1 - (da * da + db * db) * per_reach2;
-        if (!(weight > 0)) continue;
-        near.weight.push_back(weight);
-        near.z.push_back(entry.z);
-        near.index.push_back(entry.index);
+        weights[count] = weight;
+        places[count] = entry.z;
+        count += weight > 0;
       }
+      near.count = count;
     }
-  while (near.weight.size() % kLanes != 0) {
-    near.weight.push_back(-1);
-    near.z.push_back(0);
-    near.index.push_back(0);
+  for (std::size_t i = near.count; i % kLanes != 0; ++i) {
+    near.weight[i] = -1;
+    near.z[i] = 0;
   }
 }
 
@@ -134,8 +137,7 @@ float ColumnPotential::potential(const Near& near, float z) const {
   const float per_reach = 1.0f / options_.reach;
   float sums[kLanes] = {};
   const float *weights = near.weight.data(), *places = near.z.data();
-  const std::size_t count = near.weight.size();
-  for (std::size_t i = 0; i < count; i += kLanes)
+  for (std::size_t i = 0; i < near.count; i += kLanes)
     for (std::size_t l = 0; l < kLanes; ++l) {
       const float up = (z - places[i + l]) * per_reach;
       const float square = weights[i + l] - up * up;
@@ -171,9 +173,7 @@ float ColumnPotential::refined(const Near& near, float low, float high) const {
 float ColumnPotential::height(float a, float b, FunctionRef<bool(float)> in_solid, Near& near) const {
   const float reach = options_.reach, step = kStep * reach;
   const Bins bins = bins_around(a, b);
-  near.weight.clear();
-  near.z.clear();
-  near.index.clear();
+  near.count = 0;
   near.next.clear();
   for (int j = bins.j0; j <= bins.j1; ++j)
     for (int i = bins.i0; i <= bins.i1; ++i)
@@ -190,7 +190,7 @@ float ColumnPotential::height(float a, float b, FunctionRef<bool(float)> in_soli
   while (z > floor_) {
     // Down through air: where nothing is near, to the next particle.
     need(z);
-    if (near.weight.empty()) {
+    if (near.count == 0) {
       const float next = highest(bins, near) + reach;
       if (!(next > floor_)) break;
       z = std::min(z - step, next);

@@ -21,11 +21,11 @@ class ColumnPotential {
  public:
   ColumnPotential(const Particles& particles, Axis up, const Bounds& region, const ColumnOptions& options);
 
-  /// A particle beside a column.
+  /// The particles beside a column; memory for it is kept from column to column.
   struct Near {
-    std::vector<float> weight;  ///< 1 - d^2 / h^2, d being the distance from the column; padded with -1
-    std::vector<float> z;       ///< m
-    std::vector<std::uint32_t> index;
+    std::size_t count = 0;          ///< of them
+    std::vector<float> weight;      ///< 1 - d^2 / h^2, d being the distance from the column; padded with -1
+    std::vector<float> z;           ///< m
     std::vector<std::size_t> next;  ///< in each bin around
   };
 
