@@ -103,22 +103,6 @@ TEST(Simulation, LetsABoxFloatAsDeepAsItsDensitySays) {
   expect_inside(simulation.particles(), options.tank);
 }
 
-TEST(Simulation, LetsAHeavyBallSinkAndLie) {
-  SimulationOptions options = small_tank(0.2f);
-  ObstacleOptions ball = obstacle_of(kSphere, vec3(0.1f), {0.2f, 0.2f, 0.1f});
-  ball.dynamic = true;
-  ball.density = 2000;
-  options.obstacles = {ball};
-  Simulation simulation(options);
-  simulation.advance(0.7);
-  // At most a layer of water is caught under it.
-  const float height = simulation.pose(0).position.y;
-  EXPECT_GT(height, 0.0495f);
-  EXPECT_LT(height, 0.07f);
-  simulation.advance(0.1);
-  EXPECT_NEAR(simulation.pose(0).position.y, height, 0.003f);
-}
-
 TEST(Simulation, PushesWaterOutOfWhatAppearsInItWithoutAnExplosion) {
   SimulationOptions options = small_tank(0.14f);
   ObstacleOptions ball = obstacle_of(kSphere, vec3(0.1f), {0.2f, 0.07f, 0.1f});

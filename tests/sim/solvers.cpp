@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <ostream>
+
 #include "solver_cases.h"
 
 namespace meniscus {
@@ -17,6 +19,7 @@ struct Bound {
   double bounce;       ///< of its energy: what presses the water is not counted in it
   double least_force;  ///< N s, of water on a ball that moves through it
 };
+void PrintTo(const Bound& bound, std::ostream* out) { *out << (bound.solver == Solver::sph ? "sph" : "pbf"); }
 constexpr Bound kSph{Solver::sph, 700, 0.7, 700, 0.01, 0.01};
 constexpr Bound kPbf{Solver::pbf, 400, 0.5, 250, 0.04, 0.005};
 
