@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/column_gather.h"
 #include "surface/height_field_axes.h"
 
 namespace meniscus {
@@ -78,6 +79,12 @@ ColumnPotential::ColumnPotential(const Particles& particles, Axis up, const Boun
         return x.a != y.a ? x.a < y.a : x.b < y.b;
       });
   });
+  for (std::vector<float>* values : {&a_, &b_, &z_}) values->resize(entries_.size() + 2 * kLanes);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    a_[i] = entries_[i].a;
+    b_[i] = entries_[i].b;
+    z_[i] = entries_[i].z;
+  }
 }
 
 ColumnPotential::Bins ColumnPotential::bins_around(float a, float b) const {
@@ -102,31 +109,19 @@ float ColumnPotential::highest(const Bins& bins, const Near& near) const {
 
 void ColumnPotential::gather(const Bins& bins, float a, float b, float down_to, Near& near) const {
   const float per_reach2 = 1.0f / (options_.reach * options_.reach);
-  std::size_t n = 0;
+  std::size_t left = 2 * kLanes, n = 0;
   for (int j = bins.j0; j <= bins.j1; ++j)
-    for (int i = bins.i0; i <= bins.i1; ++i, ++n) {
-      const std::size_t bin =
-          static_cast<std::size_t>(j) * static_cast<std::size_t>(bins_a_) + static_cast<std::size_t>(i);
-      std::size_t& at = near.next[n];
-      const std::size_t end = start_[bin + 1];
-      if (at == end) continue;
-      if (near.count + (end - at) + kLanes > near.weight.size()) {
-        near.weight.resize(2 * (near.count + (end - at) + kLanes));
-        near.z.resize(near.weight.size());
-      }
-      // Each is written, and kept by counting it: about half of them are, in no order that branches could foresee.
-      float *weights = near.weight.data(), *places = near.z.data();
-      std::size_t count = near.count;
-      for (; at < end && entries_[at].z > down_to; ++at) {
-        const Entry& entry = entries_[at];
-        const float da = entry.a - a, db = entry.b - b;
-        const float weight = 1 - (da * da + db * db) * per_reach2;
-        weights[count] = weight;
-        places[count] = entry.z;
-        count += weight > 0;
-      }
-      near.count = count;
-    }
+    for (int i = bins.i0; i <= bins.i1; ++i, ++n)
+      left +=
+          start_[static_cast<std::size_t>(j) * static_cast<std::size_t>(bins_a_) + static_cast<std::size_t>(i) + 1] -
+          near.next[n];
+  if (near.count + left > near.weight.size()) {
+    near.weight.resize(2 * (near.count + left));
+    near.z.resize(near.weight.size());
+  }
+  const ColumnSearch search{bins.i0, bins.i1, bins.j0, bins.j1, a, b, per_reach2, down_to, near.next.data()};
+  near.count = gather_column({a_.data(), b_.data(), z_.data(), start_.data(), bins_a_}, search, near.weight.data(),
+                             near.z.data(), near.count);
   for (std::size_t i = near.count; i % kLanes != 0; ++i) {
     near.weight[i] = -1;
     near.z[i] = 0;

@@ -55,7 +55,8 @@ class ColumnPotential {
   ColumnOptions options_;
   float low_a_ = 0, low_b_ = 0, per_bin_ = 0, floor_ = 0;
   int bins_a_ = 0, bins_b_ = 0;
-  std::vector<Entry> entries_;  ///< by bin, from above
+  std::vector<Entry> entries_;    ///< by bin, from above
+  std::vector<float> a_, b_, z_;  ///< the same, apart, with some to spare
   std::vector<std::uint32_t> start_;
 };
 

@@ -139,6 +139,27 @@ TEST(HeightFieldPacket, HasTheRaysOfTheView) {
   }
 }
 
+TEST(HeightField, IsTheSameWithEveryInstructionSet) {
+  const Particles water = wavy_tank();
+  HeightFieldOptions options;
+  options.spacing = kSpacing;
+  options.up = Axis::z;
+  use_instruction_set("best");
+  const HeightField best = height_field(water, options);
+  for (const std::string& set : instruction_sets()) {
+    use_instruction_set(set);
+    const HeightField field = height_field(water, options);
+    ASSERT_EQ(field.height.size(), best.height.size());
+    for (std::size_t i = 0; i < field.height.size(); ++i) {
+      EXPECT_EQ(field.height[i] > -kInfinity, best.height[i] > -kInfinity);
+      if (best.height[i] > -kInfinity) {
+        EXPECT_NEAR(field.height[i], best.height[i], 1e-3f * kSpacing) << set;
+      }
+    }
+  }
+  use_instruction_set("best");
+}
+
 TEST(HeightFieldSurface, LeavesTheThicknessOutWhereItIsNotWanted) {
   for (const auto shape : {bumpy, holed}) {
     const HeightField field = field_of(33, shape);
