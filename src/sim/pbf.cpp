@@ -249,8 +249,8 @@ void PbfState::resize(std::size_t size, bool vorticity) {
     for (int k = 0; k < 3; ++k) records[4 * size + static_cast<std::size_t>(k)] = where;
     records[4 * size + 3] = 0.0f;
   };
-  far_away(place, 1e18f);
-  far_away(pressed, 1e18f);
+  far_away(place, 1e12f);
+  far_away(pressed, 1e12f);
   far_away(velocity, 0.0f);
   for (auto* values : {&solid, &wall_x, &wall_y, &wall_z, &dx, &dy, &dz}) values->resize(size);
   if (vorticity)

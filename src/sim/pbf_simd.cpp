@@ -55,9 +55,10 @@ void Lambda(const PbfConstants& c, const Neighbours& neighbours, PbfState& state
                      gy = hn::MulAdd(along, y, gy);
                      gz = hn::MulAdd(along, z, gz);
                    });
-    const float pressed = value * (sum_of(sum) + h3) + state.solid[i] - 1.0f;
-    const float x = state.wall_x[i] - slope * sum_of(gx), y = state.wall_y[i] - slope * sum_of(gy),
-                z = state.wall_z[i] - slope * sum_of(gz);
+    const Sums slopes = sums_of(gx, gy, gz, sum);
+    const float pressed = value * (slopes.of[3] + h3) + state.solid[i] - 1.0f;
+    const float x = state.wall_x[i] - slope * slopes.of[0], y = state.wall_y[i] - slope * slopes.of[1],
+                z = state.wall_z[i] - slope * slopes.of[2];
     const float steepness = x * x + y * y + z * z + slope * slope * sum_of(squares) + c.relaxation;
     std::copy_n(state.place.data() + 4 * i, 3, state.pressed.data() + 4 * i);
     state.pressed[4 * i + 3] = pressed > 0.0f ? -pressed / steepness : 0.0f;
@@ -85,9 +86,10 @@ void Change(const PbfConstants& c, const Neighbours& neighbours, PbfState& state
                      dy = hn::NegMulAdd(along, y, dy);
                      dz = hn::NegMulAdd(along, z, dz);
                    });
-    state.dx[i] = slope * sum_of(dx);
-    state.dy[i] = slope * sum_of(dy);
-    state.dz[i] = slope * sum_of(dz);
+    const Sums way = sums_of(dx, dy, dz, hn::Zero(d));
+    state.dx[i] = slope * way.of[0];
+    state.dy[i] = slope * way.of[1];
+    state.dz[i] = slope * way.of[2];
   }
 }
 
@@ -117,13 +119,15 @@ void Blend(const PbfConstants& c, const Neighbours& neighbours, PbfState& state,
                      cy = hn::MulAdd(along, hn::Sub(hn::Mul(vz, x), hn::Mul(vx, z)), cy);
                      cz = hn::MulAdd(along, hn::Sub(hn::Mul(vx, y), hn::Mul(vy, x)), cz);
                    });
-    state.dx[i] = value * sum_of(dx);
-    state.dy[i] = value * sum_of(dy);
-    state.dz[i] = value * sum_of(dz);
+    const Sums way = sums_of(dx, dy, dz, hn::Zero(d));
+    state.dx[i] = value * way.of[0];
+    state.dy[i] = value * way.of[1];
+    state.dz[i] = value * way.of[2];
     if (!curl) continue;
-    state.curl_x[i] = slope * sum_of(cx);
-    state.curl_y[i] = slope * sum_of(cy);
-    state.curl_z[i] = slope * sum_of(cz);
+    const Sums turn = sums_of(cx, cy, cz, hn::Zero(d));
+    state.curl_x[i] = slope * turn.of[0];
+    state.curl_y[i] = slope * turn.of[1];
+    state.curl_z[i] = slope * turn.of[2];
     std::copy_n(state.place.data() + 4 * i, 3, state.pressed.data() + 4 * i);
     state.pressed[4 * i + 3] = std::sqrt(state.curl_x[i] * state.curl_x[i] + state.curl_y[i] * state.curl_y[i] +
                                          state.curl_z[i] * state.curl_z[i]);
@@ -146,9 +150,10 @@ void CurlSlope(const PbfConstants& c, const Neighbours& neighbours, PbfState& st
                      dy = hn::NegMulAdd(along, y, dy);
                      dz = hn::NegMulAdd(along, z, dz);
                    });
-    state.dx[i] = slope * sum_of(dx);
-    state.dy[i] = slope * sum_of(dy);
-    state.dz[i] = slope * sum_of(dz);
+    const Sums way = sums_of(dx, dy, dz, hn::Zero(d));
+    state.dx[i] = slope * way.of[0];
+    state.dy[i] = slope * way.of[1];
+    state.dz[i] = slope * way.of[2];
   }
 }
 

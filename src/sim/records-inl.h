@@ -28,7 +28,18 @@ struct Records {
   Vec a, b, c, d;
 };
 
+/// The sums over the lanes of four vectors.
+struct Sums {
+  float of[4];
+};
+
 #if HWY_HAVE_SCALABLE || HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE Sums sums_of(Vec a, Vec b, Vec c, Vec e) {
+  const Tag d;
+  return {{hn::GetLane(hn::SumOfLanes(d, a)), hn::GetLane(hn::SumOfLanes(d, b)), hn::GetLane(hn::SumOfLanes(d, c)),
+           hn::GetLane(hn::SumOfLanes(d, e))}};
+}
 
 /// Records records[kStride index[0]], records[kStride index[1]] ...
 template <int kStride>
@@ -41,6 +52,31 @@ HWY_INLINE Records load_records(const float* records, const std::int32_t* index)
 }
 
 #else
+
+/// The sum of the vector's 128-bit blocks.
+template <class D>
+HWY_INLINE void store_sum_of_blocks(D d, hn::Vec<D> v, float* to) {
+  if constexpr (hn::MaxLanes(D()) <= 4) {
+    hn::StoreU(v, d, to);
+  } else {
+    const hn::Half<D> half;
+    store_sum_of_blocks(half, hn::Add(hn::UpperHalf(half, v), hn::LowerHalf(half, v)), to);
+  }
+}
+
+/// Together they cost little more than one alone.
+HWY_INLINE Sums sums_of(Vec a, Vec b, Vec c, Vec e) {
+  const Tag d;
+  const hn::RepartitionToWide<Tag> pairs;
+  const auto ab = hn::BitCast(pairs, hn::Add(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)));
+  const auto ce = hn::BitCast(pairs, hn::Add(hn::InterleaveLower(d, c, e), hn::InterleaveUpper(d, c, e)));
+  Sums sums;
+  store_sum_of_blocks(
+      d,
+      hn::Add(hn::BitCast(d, hn::InterleaveLower(pairs, ab, ce)), hn::BitCast(d, hn::InterleaveUpper(pairs, ab, ce))),
+      sums.of);
+  return sums;
+}
 
 /// One record in each block: those of index[0], index[4] ...
 template <int kStride, class D>

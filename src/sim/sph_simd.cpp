@@ -59,14 +59,16 @@ HWY_INLINE void forces(const SphConstants& c, const Neighbours& neighbours, SphS
         bend = hn::MulAdd(weight, hn::NegMulAdd(hn::Set(d, 7.0f), r2, hn::Set(d, 3.0f * h2)), bend);
       }
     }
-    state.ax[i] = spiky * sum_of(ax);
-    state.ay[i] = spiky * sum_of(ay);
-    state.az[i] = spiky * sum_of(az);
+    const Sums pushed = sums_of(ax, ay, az, bend);
+    state.ax[i] = spiky * pushed.of[0];
+    state.ay[i] = spiky * pushed.of[1];
+    state.az[i] = spiky * pushed.of[2];
     if (kTension) {
-      state.nx[i] = poly6 * sum_of(nx);
-      state.ny[i] = poly6 * sum_of(ny);
-      state.nz[i] = poly6 * sum_of(nz);
-      state.bend[i] = -poly6 * (sum_of(bend) + 3.0f * h4 * inverse);
+      const Sums fall = sums_of(nx, ny, nz, zero);
+      state.nx[i] = poly6 * fall.of[0];
+      state.ny[i] = poly6 * fall.of[1];
+      state.nz[i] = poly6 * fall.of[2];
+      state.bend[i] = -poly6 * (pushed.of[3] + 3.0f * h4 * inverse);
     }
   }
 }
