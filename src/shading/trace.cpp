@@ -20,6 +20,14 @@ constexpr float kLeastWeight = 0.03f;
 constexpr float kEndless = 1e30f;
 /// Spacings between the water and a solid behind it: less, and the water stands against it; more, and there is air.
 constexpr float kTouching = 1.0f, kApart = 2.0f;
+/// Water without particles has no spacing, but stands on floors and against walls exactly: what rounding makes of that,
+/// of its longest side.
+constexpr float kRounding = 1e-5f;
+
+float longest_side(const Bounds& bounds) {
+  const vec3 extent = bounds.extent();
+  return std::max({extent.x, extent.y, extent.z});
+}
 
 float maximum(vec3 v) { return std::max(v.x, std::max(v.y, v.z)); }
 
@@ -43,6 +51,7 @@ class Tracer {
         inputs_(inputs),
         scene_(*inputs.scene),
         spacing_(inputs.surface->spacing()),
+        apart_(spacing_ > 0 ? spacing_ : kRounding * std::min(longest_side(inputs.surface->bounds()), 1e4f)),
         glass_(scene_.tank().style == TankStyle::glass),
         result_(samples.size(), vec3{0.0f}) {
     for (const Sample& sample : samples) light_.push_back(diffuse_light(scene_.environment(), sample.normal, 0.5f));
@@ -110,9 +119,9 @@ class Tracer {
       distance = flat_distance;
       normal = flat_normal;
     }
-    if (path.inside && spacing_ > 0 && to_solid < kInfinity) {
+    if (path.inside && apart_ > 0 && to_solid < kInfinity) {
       // Water that stands on a solid has no far side there.
-      const float gap = (to_solid - distance) / spacing_;
+      const float gap = (to_solid - distance) / apart_;
       const float touching = 1.0f - glm::smoothstep(kTouching, kApart, gap);
       if (touching >= 1.0f) return end(path, to_solid, to_solid);
       if (touching > 0.0f) {
@@ -212,6 +221,7 @@ class Tracer {
   const TraceInputs& inputs_;
   const Scene& scene_;
   float spacing_;
+  float apart_;  ///< m; what kTouching and kApart count
   bool glass_;
   std::vector<vec3> result_, light_;
   std::vector<Path> paths_;
