@@ -188,6 +188,37 @@ TEST(Obstacles, AreHeldWhileTheyAreLedAndThenLetGo) {
   EXPECT_LT(glm::distance(obstacles[0].body.motion.linear, {0, -0.0981f, 0}), 1e-4f);
 }
 
+TEST(Boundary, SaysThatABoxMayTouchWhereverAPointOfItHasWalls) {
+  for (const int count : {3, 40}) {
+    Obstacles obstacles(kTank, Axis::y, kReach);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> part(0, 1);
+    const auto within = [&](const Bounds& box) {
+      const float x = part(random), y = part(random), z = part(random);
+      return box.low + box.extent() * vec3(x, y, z);
+    };
+    // All in one half of the tank.
+    for (int i = 0; i < count; ++i) obstacles.add(ball(within({{0, 0, 0}, {0.8f, 1, 1}}), 0.1f), i == 2 ? 5 : 0);
+    obstacles.appear(0);
+    int touched = 0, free = 0;
+    for (int n = 0; n < 2000; ++n) {
+      const vec3 low = within(kTank);
+      const Bounds box{low, low + 0.1f * vec3(part(random))};
+      const bool may = obstacles.may_touch(box, kReach);
+      bool does = false;
+      for (int k = 0; k < 20 && !does; ++k) {
+        Wall walls[Boundary::kMostWalls];
+        does = obstacles.walls_near(within(box), kReach, walls) > 0;
+      }
+      EXPECT_TRUE(may || !does) << n;
+      touched += does;
+      free += !may;
+    }
+    EXPECT_GT(touched, 200);
+    EXPECT_GT(free, 200);
+  }
+}
+
 TEST(Obstacles, GoToTheirPlaceInAnyNumberOfParts) {
   for (const int parts : {1, 4}) {
     Obstacles obstacles(kTank, Axis::y, kReach);

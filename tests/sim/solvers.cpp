@@ -129,6 +129,7 @@ TEST_P(Solvers, AgreeWithEveryInstructionSetToRounding) {
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   EXPECT_GE(sets, 1);
+  RecordProperty("instruction_sets", sets);
 }
 
 TEST_P(Solvers, GiveBodiesWhatTheWaterLoses) {
