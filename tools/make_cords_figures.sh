@@ -39,6 +39,6 @@ draw 12c fig12c --frames 60:61
 beside 12 12a 12b 12c
 draw 13a fig13 --refraction ray_traced
 draw 13b fig13
-draw 13c fig13_curved --refraction ray_traced
-draw 13d fig13_curved
+draw 13c fig13_curved --frames 10:11 --refraction ray_traced
+draw 13d fig13_curved --frames 10:11
 beside 13 13a 13b 13c 13d
