@@ -53,9 +53,10 @@ struct VirtualEyeOptions {
   float trapezium_b = 0;         ///< m; half width at the eye's end; 0: by its size
   bool per_point = false;        ///< each point from its own virtual eye: for wide objects, beyond the paper
   /// Objects are looked up where the ray passes them, not by its direction alone: they keep together under waves. Beyond
-  /// the paper; needs neither scale_correction nor per_point, which then do nothing.
-  bool object_position = false;
-  bool static_position = true;   ///< off: what stands still is looked up by direction alone, as published
+  /// the paper; needs neither scale_correction nor per_point, which then do nothing. Off: by direction, as published.
+  bool object_position = true;
+  /// What stands still is found where the ray meets it. Off: looked up in a map by direction alone, as published.
+  bool static_position = true;
   float adaptation_width = 0;    ///< m beyond an object's outline; 0: by its size
   float combine_distance = -1;   ///< m; objects nearer to each other share an eye; negative: default
 };

@@ -53,14 +53,6 @@ vec3 sun_disc(const Ray& ray, Beam beam, const Scene& scene) {
   return glm::min(environment.sun_glare(ray.direction, beam.spread * beam.spread), vec3{200.0f});
 }
 
-/// What is seen beside the water.
-vec3 background(const Ray& ray, Beam beam, const Scene& scene) {
-  vec3 radiance = scene.radiance(ray, beam);
-  const vec3 disc = sun_disc(ray, beam, scene);
-  if (disc != vec3{0.0f} && !(scene.distance(ray) < kInfinity)) radiance += disc;
-  return radiance;
-}
-
 /// Indices of the pixels by tiles, and within them by blocks: what comes one after another lies close together.
 std::vector<std::uint32_t> by_tiles(int width, int height) {
   std::vector<std::uint32_t> order;
@@ -107,17 +99,23 @@ class Shading {
     std::vector<std::uint32_t> order;
     if (traced && points_.empty()) order = by_tiles(view_.width, view_.height);
     parallel_for(picture_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      std::vector<Wet> wet;
-      for (std::size_t k = begin; k < end; ++k) {
-        const std::size_t i = order.empty() ? k : order[k];
-        if (const Wet pixel = background_of(i); pixel.coverage > 0) wet.push_back(pixel);
-      }
+      // Taken out: this thread may begin another piece while it waits within this one.
+      thread_local Scratch memory;
+      Scratch scratch = std::move(memory);
+      scratch.pixels.clear();
+      std::vector<std::size_t>& pixels = scratch.pixels;
+      std::vector<Wet>& wet = scratch.wet;
+      for (std::size_t k = begin; k < end; ++k) pixels.push_back(order.empty() ? k : order[k]);
+      backgrounds(scratch);
       if (traced)
         trace(wet);
+      else if (optics_.options.refraction == RefractionMethod::virtual_eye && material_.transparent)
+        look(scratch);
       else
         for (const Wet& pixel : wet) mix_in(pixel, seen_of(pixel, material_of(pixel)));
       if (glass_)
-        for (std::size_t k = begin; k < end; ++k) behind_glass(order.empty() ? k : order[k]);
+        for (const std::size_t i : pixels) behind_glass(i);
+      memory = std::move(scratch);
     });
     return std::move(picture_);
   }
@@ -130,58 +128,111 @@ class Shading {
     Sample sample;
   };
 
+  /// What is held for a piece of the picture; kept by a thread for its next piece.
+  struct Scratch {
+    std::vector<std::size_t> pixels, dry;
+    std::vector<Wet> wet;
+    std::vector<Ray> rays, asked;
+    std::vector<float> distances;
+    std::vector<vec3> radiance;
+    std::vector<Sample> samples;
+    std::vector<Material> materials;
+  };
+
   vec2 point_of(std::size_t i) const {
     if (!points_.empty()) return points_[i];
     const std::size_t width = static_cast<std::size_t>(view_.width);
     return {static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f};
   }
 
-  /// Puts what is seen beside the water into the picture.
-  Wet background_of(std::size_t i) {
-    Wet pixel;
-    pixel.index = i;
-    const Ray ray = view_.ray(point_of(i));
-    float depth = water_.depth[i];
-    float coverage = std::clamp(water_.coverage[i], 0.0f, 1.0f);
-    if (!(coverage > 0) || !(depth >= 0 && depth < kInfinity)) coverage = 0;
-    vec3 normal = water_.normal[i];
-    if (coverage > 0) flatten_at_walls(scene_.tank(), spacing_, ray, depth, normal);
+  /// Puts what is seen beside the water into the picture; those with water go to `wet`.
+  void backgrounds(Scratch& scratch) {
+    std::vector<Wet>& wet = scratch.wet;
+    std::vector<Ray>& rays = scratch.rays;
+    std::vector<std::size_t>& dry = scratch.dry;
+    wet.clear();
+    rays.clear();
+    dry.clear();
+    for (const std::size_t i : scratch.pixels) {
+      Wet pixel;
+      pixel.index = i;
+      Sample& sample = pixel.sample;
+      sample.ray = view_.ray(point_of(i));
+      sample.depth = water_.depth[i];
+      pixel.coverage = std::clamp(water_.coverage[i], 0.0f, 1.0f);
+      if (pixel.coverage > 0 && sample.depth >= 0 && sample.depth < kInfinity) {
+        sample.normal = water_.normal[i];
+        flatten_at_walls(scene_.tank(), spacing_, sample.ray, sample.depth, sample.normal);
+        wet.push_back(pixel);
+      } else {
+        rays.push_back(sample.ray);
+        dry.push_back(i);
+      }
+    }
 
     // A solid before the water hides it; an eye in the water has its own order.
-    if (!water_.eye_in_water && coverage > 0 && solid_distance(i, ray) < depth) coverage = 0;
-    if (water_.eye_in_water && coverage > 0) {
-      // Water that ends just before a solid stands against it: there is no surface between them.
-      const SolidHit solid = scene_.hit(ray, beam_);
-      const float gap = solid.distance - depth;
-      if (solid.found() && gap * -glm::dot(ray.direction, solid.face_normal) < kAgainst * spacing_) coverage = 0;
+    std::vector<float>& distances = scratch.distances;
+    if (!water_.eye_in_water && !behind_ && !wet.empty()) {
+      std::vector<Ray>& asked = scratch.asked;
+      asked.clear();
+      for (const Wet& pixel : wet) asked.push_back(pixel.sample.ray);
+      distances.resize(asked.size());
+      scene_.distances(asked, distances);
     }
-    if (coverage < 1.0f)
-      picture_[i] = water_.eye_in_water ? deep_radiance(ray, beam_, scene_, material_) : background_at(i, ray);
-    pixel.coverage = coverage;
-    if (!(coverage > 0)) return pixel;
-    Sample& sample = pixel.sample;
-    sample.ray = ray;
-    sample.depth = depth;
-    // From inside the surface looks away from the eye.
-    sample.normal = facing(water_.eye_in_water ? -normal : normal, ray.direction);
-    const float thickness = water_.thickness[i];
-    sample.thickness = thickness > 0 && thickness < kInfinity ? thickness : 0.0f;
-    sample.beam = beam_;
-    sample.normal_variance = variance_.at(i);
-    sample.fresnel = optics_.options.fresnel;
-    return pixel;
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < wet.size(); ++k) {
+      Wet& pixel = wet[k];
+      const std::size_t i = pixel.index;
+      Sample& sample = pixel.sample;
+      if (!water_.eye_in_water) {
+        if ((behind_ ? behind_->depth[i] : distances[k]) < sample.depth) pixel.coverage = 0;
+      } else {
+        // Water that ends just before a solid stands against it: there is no surface between them.
+        const SolidHit solid = scene_.hit(sample.ray, beam_);
+        const float gap = solid.distance - sample.depth;
+        if (solid.found() && gap * -glm::dot(sample.ray.direction, solid.face_normal) < kAgainst * spacing_)
+          pixel.coverage = 0;
+      }
+      if (pixel.coverage < 1.0f) {
+        rays.push_back(sample.ray);
+        dry.push_back(i);
+      }
+      if (!(pixel.coverage > 0)) continue;
+      // From inside the surface looks away from the eye.
+      sample.normal = facing(water_.eye_in_water ? -sample.normal : sample.normal, sample.ray.direction);
+      const float thickness = water_.thickness[i];
+      sample.thickness = thickness > 0 && thickness < kInfinity ? thickness : 0.0f;
+      sample.beam = beam_;
+      sample.normal_variance = variance_.at(i);
+      sample.fresnel = optics_.options.fresnel;
+      wet[left++] = pixel;
+    }
+    wet.resize(left);
+    paint_dry(scratch);
   }
 
-  /// Distance to the first solid, from the picture of the scene where that was handed over.
-  float solid_distance(std::size_t i, const Ray& ray) const {
-    return behind_ ? behind_->depth[i] : scene_.distance(ray);
-  }
-
-  vec3 background_at(std::size_t i, const Ray& ray) const {
-    if (!behind_) return background(ray, beam_, scene_);
-    vec3 radiance = behind_->radiance[i];
-    if (!(behind_->depth[i] < kInfinity)) radiance += sun_disc(ray, beam_, scene_);
-    return radiance;
+  void paint_dry(Scratch& scratch) {
+    const std::vector<Ray>& rays = scratch.rays;
+    const std::vector<std::size_t>& dry = scratch.dry;
+    if (water_.eye_in_water) {
+      for (std::size_t k = 0; k < dry.size(); ++k) picture_[dry[k]] = deep_radiance(rays[k], beam_, scene_, material_);
+      return;
+    }
+    std::vector<vec3>& radiance = scratch.radiance;
+    std::vector<float>& distances = scratch.distances;
+    if (!behind_) {
+      radiance.resize(rays.size());
+      distances.resize(rays.size());
+      if (optics_.eyes && optics_.options.refraction == RefractionMethod::virtual_eye)
+        optics_.eyes->light().radiance(scene_, rays, beam_, radiance, distances);
+      else
+        scene_.radiance(rays, beam_, radiance, distances);
+    }
+    for (std::size_t k = 0; k < dry.size(); ++k) {
+      const std::size_t i = dry[k];
+      picture_[i] = behind_ ? behind_->radiance[i] : radiance[k];
+      if (!((behind_ ? behind_->depth[i] : distances[k]) < kInfinity)) picture_[i] += sun_disc(rays[k], beam_, scene_);
+    }
   }
 
   Material material_of(const Wet& pixel) const {
@@ -204,13 +255,36 @@ class Shading {
 
   vec3 seen_at_once(const Wet& pixel, const Material& material) const {
     if (!material.transparent) return opaque_radiance(pixel.sample, scene_, material);
-    if (optics_.options.refraction == RefractionMethod::virtual_eye)
-      return virtual_eye_radiance(pixel.sample, *optics_.eyes, scene_, material, water_.eye_in_water);
     if (water_.eye_in_water) return window_radiance(pixel.sample, scene_, material);
     if (optics_.options.refraction == RefractionMethod::image_space)
       return image_space_radiance(pixel.sample, point_of(pixel.index), {view_, &optics_.behind->depth},
                                   optics_.behind->radiance, optics_.options, scene_, material);
     return transparent_radiance(pixel.sample, scene_, material);
+  }
+
+  /// By virtual eyes.
+  void look(Scratch& scratch) {
+    const std::vector<Wet>& wet = scratch.wet;
+    std::vector<Sample>& samples = scratch.samples;
+    std::vector<Material>& materials = scratch.materials;
+    std::vector<vec3>& seen = scratch.radiance;
+    samples.clear();
+    materials.clear();
+    for (const Wet& pixel : wet) samples.push_back(pixel.sample);
+    if (water_.colour.empty())
+      materials.push_back(material_);
+    else
+      for (const Wet& pixel : wet) materials.push_back(material_of(pixel));
+    seen.assign(wet.size(), vec3{0.0f});
+    if (!dispersive_) virtual_eye_radiance(samples, materials, *optics_.eyes, scene_, water_.eye_in_water, seen);
+    for (int channel = 0; dispersive_ && channel < 3; ++channel) {
+      std::vector<Material> channels;
+      for (const Material& material : materials) channels.push_back(of_channel(material, channel));
+      std::vector<vec3> one(wet.size());
+      virtual_eye_radiance(samples, channels, *optics_.eyes, scene_, water_.eye_in_water, one);
+      for (std::size_t k = 0; k < wet.size(); ++k) seen[k][channel] = one[k][channel];
+    }
+    for (std::size_t k = 0; k < wet.size(); ++k) mix_in(wet[k], seen[k]);
   }
 
   void trace(std::span<const Wet> wet) {

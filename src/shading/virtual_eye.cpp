@@ -12,6 +12,8 @@ namespace {
 constexpr int kLeastSize = 16, kMostSize = 8192;
 /// Faces are no larger than this unless it is asked for.
 constexpr int kDefaultMostSize = 2048;
+/// Pixels of the picture between points at which light on planes is held.
+constexpr float kLightPixels = 2.0f;
 
 void require(bool holds, const char* name, double value, const char* range) {
   if (!holds)
@@ -91,7 +93,19 @@ std::shared_ptr<const VirtualEyes> make_virtual_eyes(const View& view, const Hei
   inputs.size = options.map_size > 0 ? options.map_size
                                      : static_cast<int>(std::clamp(by_picture, static_cast<float>(kLeastSize),
                                                                    static_cast<float>(kDefaultMostSize)));
-  return std::make_shared<const VirtualEyes>(inputs);
+  // Light on the ground under and around the water, as finely as the picture can show it.
+  Bounds region = field.bounds();
+  const vec3 extent = region.extent();
+  for (int k = 0; k < 3; ++k) {
+    const float margin = 0.1f * std::max({extent.x, extent.y, extent.z}) + 1.2f * std::abs(glm::dot(extent, up));
+    if (up[k] == 0) {
+      region.low[k] -= margin;
+      region.high[k] += margin;
+    }
+  }
+  const float away = glm::length(view.eye - field.bounds().centre());
+  const float step = std::max(kLightPixels * view.pixel_size(away), 1e-6f);
+  return std::make_shared<const VirtualEyes>(inputs, region, step);
 }
 
 }  // namespace meniscus

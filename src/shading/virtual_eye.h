@@ -1,6 +1,7 @@
 /// Maps of what stands in and around the water, drawn from virtual eyes.                  [Cords2008] 2.1 to 2.3
 #pragma once
 
+#include "shading/plane_light.h"
 #include "shading/sample.h"
 #include "shading/trapezium.h"
 #include "shading/virtual_eye_map.h"
@@ -35,16 +36,17 @@ class EyeSide {
     ApproximatingPlane plane;  ///< of the whole water, its normal on the eye's side
     float slack = 0;           ///< m by which the water differs from it
     bool eye_above = true;
-    float ratio = 1;  ///< index of refraction on the eye's side over that behind the surface
-    int size = 0;     ///< of the maps' faces
+    float ratio = 1;                    ///< index of refraction on the eye's side over that behind the surface
+    int size = 0;                       ///< of the maps' faces
+    const PlaneLight* light = nullptr;  ///< of all planes; must outlive the side
   };
   EyeSide(const Inputs& inputs, bool reflected);
 
-  /// @param from       on the surface
-  /// @param direction  unit, into this side
-  EyeLook look(vec3 from, vec3 direction) const;
+  /// @param rays   from the surface into this side, neighbours close together; no more than a thousand or so
+  /// @param beam   of the rays
+  /// @param looks  one a ray, overwritten
+  void look(std::span<const Ray> rays, Beam beam, std::span<EyeLook> looks) const;
   const CubeMap& objects_map() const { return *object_map_; }
-  const CubeMap& still_map() const { return *still_map_; }
   const std::vector<VirtualEye>& eyes() const { return eyes_; }
 
  private:
@@ -58,11 +60,11 @@ class EyeSide {
   };
   bool draw_objects(std::span<const vec3> directions, std::span<MapTexel> texels) const;
   bool draw_still(std::span<const vec3> directions, std::span<MapTexel> texels) const;
-  void look_still(vec3 from, vec3 direction, EyeLook& look) const;
+  void look_still(std::span<const Ray> rays, Beam beam, std::span<EyeLook> looks) const;
+  void look_still_by_direction(vec3 direction, EyeLook& look) const;
   void look_by_direction(vec3 from, vec3 direction, EyeLook& look) const;
   void look_by_position(vec3 from, vec3 direction, EyeLook& look) const;
   void add(const CubeMap::Cell& cell, vec3 from, std::int32_t only, EyeLook& look) const;
-  float way_out(vec3 from, vec3 direction) const;
 
   Scene scene_, still_scene_;
   VirtualEye still_eye_;
@@ -71,26 +73,41 @@ class EyeSide {
   std::vector<Trapezium> trapezia_;  ///< of all objects; none: objects are seen everywhere
   Axis up_ = Axis::y;
   bool per_point_ = false, by_position_ = true, objects_by_position_ = false, nothing_still_ = false;
-  Bounds room_;
+  const PlaneLight* light_;
   float slack_ = 0;
   std::unique_ptr<CubeMap> object_map_, still_map_;
 };
 
 class VirtualEyes {
  public:
-  VirtualEyes(const EyeSide::Inputs& inputs)
-      : refracted_(inputs, false), reflected_(inputs, true), plane_(inputs.plane) {}
+  /// @param inputs  without their light
+  VirtualEyes(EyeSide::Inputs inputs, const Bounds& region, float step)
+      : light_(inputs.scene, region, step),
+        refracted_((inputs.light = &light_, inputs), false),
+        reflected_(inputs, true),
+        plane_(inputs.plane),
+        sides_too_(inputs.eye_above && inputs.options.object_position && inputs.options.static_position &&
+                   inputs.scene.tank().style == TankStyle::tiled) {}
   const EyeSide& refracted() const { return refracted_; }
   const EyeSide& reflected() const { return reflected_; }
   const ApproximatingPlane& plane() const { return plane_; }
+  const PlaneLight& light() const { return light_; }
+  /// Whether sides of the water are looked through like its surface: everything is found by its place, and the water
+  /// ends at walls.
+  bool sides_too() const { return sides_too_; }
 
  private:
+  PlaneLight light_;
   EyeSide refracted_, reflected_;
   ApproximatingPlane plane_;
+  bool sides_too_ = false;
 };
 
-/// Radiance of one point of the surface by lookups in the maps.
-vec3 virtual_eye_radiance(const Sample& sample, const VirtualEyes& eyes, const Scene& scene, const Material& material,
-                          bool eye_in_water);
+/// Radiance of points of the surface by lookups in the maps.
+/// @param samples    neighbours close together; no more than a thousand or so
+/// @param materials  one for all, or one a sample
+/// @param seen       one a sample
+void virtual_eye_radiance(std::span<const Sample> samples, std::span<const Material> materials, const VirtualEyes& eyes,
+                          const Scene& scene, bool eye_in_water, std::span<vec3> seen);
 
 }  // namespace meniscus

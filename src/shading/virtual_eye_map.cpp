@@ -9,6 +9,8 @@ namespace meniscus {
 namespace {
 
 constexpr std::size_t kTexels = static_cast<std::size_t>(CubeMap::kSide) * CubeMap::kSide;
+/// A map is never larger than this.
+constexpr std::size_t kMostBytes = std::size_t{512} << 20;
 /// Stand for a tile that is being drawn and for one that holds nothing.
 const std::array<MapTexel, kTexels> kBusy{}, kNothing{};
 
@@ -72,6 +74,14 @@ const CubeMap::Tile* CubeMap::draw_tile(std::size_t index) const {
       directions[static_cast<std::size_t>(k)] = glm::normalize(direction);
     }
     const bool filled = draw_(directions, *fresh);
+    if (filled && filled_ * sizeof(Tile) > kMostBytes)
+      throw Error(ErrorCode::limit_exceeded, {"the maps of virtual eyes need too much memory",
+                                              "less than 512 MiB",
+                                              "more",
+                                              {},
+                                              {},
+                                              {},
+                                              "choose smaller maps"});
     held = filled ? fresh.release() : &kNothing;
     ++drawn_;
     filled_ += filled;

@@ -96,6 +96,8 @@ VirtualEye VirtualEye::refracted(const ApproximatingPlane& plane, vec3 eye, cons
   const vec3 across = result.axis_ - glm::dot(result.axis_, d) * d;
   const float square = glm::dot(across, across);
   if (!(square > 1e-4f)) return result;
+  // Beside a, directions differ by `ratio` of what they differ by in the air: so much of its width is seen there.
+  result.across_ = ratio;
   result.scale_ = std::clamp(1.0f - glm::dot(missed, across) / (square * reach), kLeastScale, kMostScale);
   return result;
 }
@@ -110,12 +112,13 @@ std::optional<MapRay> VirtualEye::ray(vec3 direction) const {
     return MapRay{{*entry - length * direction, direction}, length, 1.0f};
   }
   MapRay result{{position_, direction}, 0, 1};
-  if (scale_ != 1.0f) {
-    // The object scaled is met by a ray where the object itself is met by the ray scaled back.
-    const float back = 1.0f / scale_ - 1.0f;
-    const vec3 offset = position_ - pivot_;
-    result.ray.origin = position_ + back * glm::dot(offset, axis_) * axis_;
-    const vec3 scaled = direction + back * glm::dot(direction, axis_) * axis_;
+  if (scale_ != 1.0f || across_ != 1.0f) {
+    // The object scaled around the pivot is met by a ray where the object itself is met by the ray scaled back.
+    const auto scaled_back = [&](vec3 v) {
+      return v / across_ + (1.0f / scale_ - 1.0f / across_) * glm::dot(v, axis_) * axis_;
+    };
+    result.ray.origin = pivot_ + scaled_back(position_ - pivot_);
+    const vec3 scaled = scaled_back(direction);
     result.scale = glm::length(scaled);
     result.ray.direction = scaled / result.scale;
   }

@@ -34,6 +34,8 @@ class VirtualEye {
   const ApproximatingPlane& plane() const { return plane_; }
   /// Factor of the object's length along its axis, and the point that stays where it is.    [Cords2008] fig. 3
   float scale() const { return scale_; }
+  /// Factor of its width, so that it goes on at the surface as wide as it is above.
+  float scale_across() const { return across_; }
   vec3 pivot() const { return pivot_; }
 
  private:
@@ -41,7 +43,7 @@ class VirtualEye {
   vec3 eye_{0.0f}, position_{0.0f};
   float ratio_ = 1;
   bool reflected_ = false, per_point_ = false;
-  float scale_ = 1;
+  float scale_ = 1, across_ = 1;  ///< along the axis and across it
   vec3 pivot_{0.0f}, axis_{0, 1, 0};
 };
 

@@ -3,6 +3,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <numbers>
 
 #include "shading/virtual_eye.h"
 #include "shading/water_object_shape.h"
@@ -11,8 +12,11 @@ namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kPerPi = std::numbers::inv_pi_v<float>;
 /// Rays start this many texels before the plane, so that lookups between texels at the waterline find the object.
 constexpr float kBeforePlane = 1.5f;
+/// Part of its way from which a ray meets an object a second time, for its light.
+constexpr float kShortly = 1e-4f;
 /// Lookups of an object by position: each but the last moves along the ray to the face that is seen.
 constexpr int kPasses = 3;
 
@@ -56,6 +60,7 @@ EyeSide::EyeSide(const Inputs& inputs, bool reflected)
       up_(inputs.field.up),
       by_position_(inputs.options.static_position),
       objects_by_position_(inputs.options.object_position),
+      light_(inputs.light),
       slack_(inputs.slack) {
   const vec3 eye = inputs.view.eye;
   const bool above_side = inputs.eye_above == reflected;  // of the water: what this side shows stands above it
@@ -74,8 +79,10 @@ EyeSide::EyeSide(const Inputs& inputs, bool reflected)
               object.bounds.centre(), 0.5f * glm::length(object.bounds.extent()),
               object.axis_top,        object.axis_end - object.axis_top};
     // Scaled about a point that is not its centre, the ball moves.
-    body.radius = body.radius * std::max(1.0f, virtual_eye.scale()) +
-                  std::abs(virtual_eye.scale() - 1.0f) * glm::length(body.centre - virtual_eye.pivot());
+    const float along = virtual_eye.scale(), across = virtual_eye.scale_across();
+    body.radius =
+        body.radius * std::max({1.0f, along, across}) +
+        std::max(std::abs(along - 1.0f), std::abs(across - 1.0f)) * glm::length(body.centre - virtual_eye.pivot());
     bodies_.push_back(std::move(body));
   }
   per_point_ = !reflected && object_options.per_point && inputs.options.displaced_eye;
@@ -91,45 +98,24 @@ EyeSide::EyeSide(const Inputs& inputs, bool reflected)
   still_eye_ = reflected ? VirtualEye::reflected(inputs.plane, eye)
                          : VirtualEye::refracted(inputs.plane, eye, a, inputs.ratio, still_options);
 
-  // A box that most of what stands still lies around: the tank, or the ground alone.
-  const vec3 up = direction_of(up_);
-  const Tank& tank = inputs.scene.tank();
-  room_ = water;
-  if (tank.style != TankStyle::none && !tank.inside.empty()) {
-    room_ = tank.inside;
-  } else {
-    const Ground& ground = inputs.scene.ground();
-    for (int k = 0; k < 3; ++k) {
-      if (up[k] > 0.5f) {
-        if (ground.visible && std::abs(ground.up[k]) > 0.99f) room_.low[k] = ground.height * ground.up[k];
-      } else {
-        room_.low[k] = -kInfinity;
-        room_.high[k] = kInfinity;
-      }
-    }
-  }
-  for (int k = 0; k < 3; ++k)
-    if (up[k] > 0.5f) room_.high[k] = kInfinity;
-  nothing_still_ = above_side && tank.style == TankStyle::none && still_scene_.solids().empty();
+  nothing_still_ = above_side && inputs.scene.tank().style == TankStyle::none && still_scene_.solids().empty();
 
   object_map_ = std::make_unique<CubeMap>(
       inputs.size, [this](auto directions, auto texels) { return draw_objects(directions, texels); });
-  still_map_ = std::make_unique<CubeMap>(
-      inputs.size, [this](auto directions, auto texels) { return draw_still(directions, texels); });
+  if (!by_position_)
+    still_map_ = std::make_unique<CubeMap>(
+        inputs.size, [this](auto directions, auto texels) { return draw_still(directions, texels); });
 }
 
 bool EyeSide::draw_objects(std::span<const vec3> directions, std::span<MapTexel> texels) const {
-  struct Nearest {
-    float distance = kInfinity;  ///< m in the map
-    float from = 0;
-    SolidHit hit;
-    Ray ray{};
-    std::int32_t object = -1;
-  };
   const vec3 middle = glm::normalize(directions.front() + directions.back());
   const float half_angle = std::acos(std::clamp(glm::dot(middle, directions.front()), -1.0f, 1.0f)) * 1.5f;
   const float texel = object_map_->texel_angle();
-  std::vector<Nearest> nearest;
+  std::vector<float> nearest;  // m in the map
+  std::vector<Ray> seen_by(directions.size()), rays;
+  std::vector<float> beyond(directions.size()), starts, scales;
+  std::vector<std::size_t> which;
+  std::vector<SolidHit> hits;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Body& body = bodies_[k];
     if (!per_point_) {
@@ -139,28 +125,54 @@ bool EyeSide::draw_objects(std::span<const vec3> directions, std::span<MapTexel>
                                       std::asin(body.radius / length) + half_angle)
         continue;
     }
+    rays.clear();
+    starts.clear();
+    scales.clear();
+    which.clear();
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const auto ray = eyes_[k].ray(directions[i]);
       if (!ray) continue;
       const float cosine = std::abs(glm::dot(ray->ray.direction, eyes_[k].plane().normal));
       const float before = std::min(kBeforePlane * texel / std::max(cosine, 0.02f), 0.05f) * ray->from;
-      const SolidHit hit = body.solids.hit(ray->ray, {0.0f, texel}, ray->from - before);
-      if (!hit.found()) continue;
-      if (nearest.empty()) nearest.resize(directions.size());
-      if (hit.distance / ray->scale < nearest[i].distance)
-        nearest[i] = {hit.distance / ray->scale, ray->from, hit, ray->ray, body.index};
+      const float start = ray->from - before;
+      rays.push_back({ray->ray.origin + start * ray->ray.direction, ray->ray.direction});
+      starts.push_back(start);
+      scales.push_back(ray->scale);
+      which.push_back(i);
+      beyond[i] = ray->from;
+    }
+    hits.assign(rays.size(), SolidHit{});
+    body.solids.hits(rays, {0.0f, texel}, hits);
+    for (std::size_t j = 0; j < rays.size(); ++j) {
+      if (!hits[j].found()) continue;
+      if (nearest.empty()) nearest.assign(directions.size(), kInfinity);
+      const std::size_t i = which[j];
+      const float distance = starts[j] + hits[j].distance;
+      if (!(distance / scales[j] < nearest[i])) continue;
+      nearest[i] = distance / scales[j];
+      texels[i].alpha = 1;
+      texels[i].distance = objects_by_position_ ? distance : std::max(0.0f, distance - beyond[i]);
+      texels[i].normal = hits[j].face_normal;
+      texels[i].object = body.index;
+      // From just before the object the whole scene shows the same place in all its light.
+      const float shortly = std::min(kShortly * distance, hits[j].distance);
+      seen_by[i] = {rays[j].origin + (hits[j].distance - shortly) * rays[j].direction, rays[j].direction};
     }
   }
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    const Nearest& found = nearest[i];
-    if (found.object < 0) continue;
-    texels[i].radiance = scene_.lit(found.hit, found.ray, {0.0f, texel});
-    texels[i].alpha = 1;
-    texels[i].distance = objects_by_position_ ? found.hit.distance : std::max(0.0f, found.hit.distance - found.from);
-    texels[i].normal = found.hit.face_normal;
-    texels[i].object = found.object;
-  }
-  return !nearest.empty();
+  if (nearest.empty()) return false;
+  rays.clear();
+  which.clear();
+  float width = 0;
+  for (std::size_t i = 0; i < nearest.size(); ++i)
+    if (nearest[i] < kInfinity) {
+      rays.push_back(seen_by[i]);
+      which.push_back(i);
+      width += texel * nearest[i];
+    }
+  std::vector<vec3> radiance(rays.size());
+  scene_.radiance(rays, {width / static_cast<float>(rays.size()), 0.0f}, radiance);
+  for (std::size_t j = 0; j < rays.size(); ++j) texels[which[j]].radiance = radiance[j];
+  return true;
 }
 
 bool EyeSide::draw_still(std::span<const vec3> directions, std::span<MapTexel> texels) const {
@@ -176,47 +188,36 @@ bool EyeSide::draw_still(std::span<const vec3> directions, std::span<MapTexel> t
     any = true;
     texels[i].radiance = hit.presence * scene_.lit(hit, ray->ray, beam);
     texels[i].alpha = hit.presence;
-    texels[i].distance = by_position_ ? hit.distance : std::max(0.0f, hit.distance - ray->from);
+    texels[i].distance = std::max(0.0f, hit.distance - ray->from);
     texels[i].normal = hit.face_normal;
   }
   return any;
 }
 
-float EyeSide::way_out(vec3 from, vec3 direction) const {
-  float way = kInfinity;
-  for (int k = 0; k < 3; ++k) {
-    const float wall = direction[k] > 0 ? room_.high[k] : room_.low[k];
-    if (direction[k] != 0 && std::isfinite(wall)) way = std::min(way, std::max(0.0f, (wall - from[k]) / direction[k]));
+void EyeSide::look_still(std::span<const Ray> rays, Beam beam, std::span<EyeLook> looks) const {
+  if (nothing_still_) return;
+  if (!by_position_) {
+    for (std::size_t i = 0; i < rays.size(); ++i) look_still_by_direction(rays[i].direction, looks[i]);
+    return;
   }
-  return way;
+  thread_local std::vector<SolidHit> hits;
+  hits.resize(rays.size());
+  still_scene_.hits(rays, beam, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const SolidHit& hit = hits[i];
+    if (!hit.found()) continue;
+    EyeLook& look = looks[i];
+    look.still_alpha = hit.presence;
+    look.still_distance = hit.distance;
+    const Ray& ray = rays[i];
+    std::optional<vec3> light;
+    if (!(hit.roughness < 1.0f)) light = light_->at(ray.origin + hit.distance * ray.direction, hit.face_normal);
+    look.still = hit.presence * (light ? kPerPi * hit.albedo * *light : scene_.lit(hit, ray, beam));
+  }
 }
 
-void EyeSide::look_still(vec3 from, vec3 direction, EyeLook& look) const {
-  if (nothing_still_) return;
-  vec3 towards = direction;
-  float distance = -1;
-  if (by_position_) {
-    // The place where the ray leaves the room, corrected by the face that the map shows there.
-    const vec3 eye = still_eye_.position();
-    distance = way_out(from, direction);
-    if (distance < kInfinity) {
-      towards = from + distance * direction - eye;
-      const CubeMap::Cell cell = still_map_->at(towards);
-      if (!cell.first) return;
-      if (const MapTexel& texel = cell.nearest(); texel.alpha > 0) {
-        // Seen along the ray to the very point, not along the nearest texel's.
-        const float away = glm::length(towards);
-        const vec3 shown = eye + texel.distance / away * towards;
-        const float along = glm::dot(direction, texel.normal);
-        if (along < -1e-4f) {
-          const float corrected = glm::dot(shown - from, texel.normal) / along;
-          if (corrected > 0) distance = corrected;
-        }
-      }
-      towards = from + distance * direction - eye;
-    }
-  }
-  const CubeMap::Cell cell = still_map_->at(towards);
+void EyeSide::look_still_by_direction(vec3 direction, EyeLook& look) const {
+  const CubeMap::Cell cell = still_map_->at(direction);
   if (!cell.first) return;
   float sum = 0;
   for (int k = 0; k < 4; ++k) {
@@ -226,8 +227,7 @@ void EyeSide::look_still(vec3 from, vec3 direction, EyeLook& look) const {
     look.still_alpha += weight * texel.alpha;
     if (texel.alpha > 0) sum += weight * texel.alpha * texel.distance;
   }
-  if (look.still_alpha > 0)
-    look.still_distance = by_position_ && distance < kInfinity ? distance : sum / look.still_alpha;
+  if (look.still_alpha > 0) look.still_distance = sum / look.still_alpha;
 }
 
 void EyeSide::add(const CubeMap::Cell& cell, vec3 from, std::int32_t only, EyeLook& look) const {
@@ -295,15 +295,15 @@ void EyeSide::look_by_position(vec3 from, vec3 direction, EyeLook& look) const {
   }
 }
 
-EyeLook EyeSide::look(vec3 from, vec3 direction) const {
-  EyeLook look;
-  look_still(from, direction, look);
-  if (bodies_.empty()) return look;
-  if (objects_by_position_)
-    look_by_position(from, direction, look);
-  else
-    look_by_direction(from, direction, look);
-  return look;
+void EyeSide::look(std::span<const Ray> rays, Beam beam, std::span<EyeLook> looks) const {
+  std::fill(looks.begin(), looks.end(), EyeLook{});
+  look_still(rays, beam, looks);
+  if (bodies_.empty()) return;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (objects_by_position_)
+      look_by_position(rays[i].origin, rays[i].direction, looks[i]);
+    else
+      look_by_direction(rays[i].origin, rays[i].direction, looks[i]);
 }
 
 }  // namespace meniscus

@@ -111,9 +111,11 @@ View from_height(float height, int size = kSize) {
   return perspective_view({0.3f, height, 2.0f}, {0, 0.35f, 0}, {0, 1, 0}, 0.5f, size, size);
 }
 
+/// As published: objects are looked up by direction.
 OpticsOptions by_eyes() {
   OpticsOptions options;
   options.refraction = RefractionMethod::virtual_eye;
+  options.eyes.object_position = options.eyes.static_position = false;
   return options;
 }
 
@@ -159,7 +161,7 @@ TEST(VirtualEye, ShowsAnObliquePoleBentBySnellsLawToAPixel) {
     EXPECT_LT(largest_error(pole, view, pole.picture(view, options)), 1.0f) << height;
     options.eyes.map_size = 0;
     options.eyes.per_point = false;
-    options.eyes.object_position = true;
+    options.eyes.object_position = options.eyes.static_position = true;
     EXPECT_LT(largest_error(pole, view, pole.picture(view, options)), 1.0f) << height;
     options.refraction = RefractionMethod::ray_traced;
     EXPECT_LT(largest_error(pole, view, pole.picture(view, options)), 1.0f) << height;
@@ -175,6 +177,22 @@ TEST(VirtualEye, AsPublishedIsExactAtTheSurfaceAndTheEndOfAThinUprightPole) {
     const vec2 end = pictured(view, fermat(glm::dvec3(view.eye), pole.under(1), 1, static_cast<double>(kIor)));
     EXPECT_NEAR(lowest_dark(picture), end.y, 2.0f) << height;
     EXPECT_LT(largest_error(pole, view, picture), 4.0f) << height;
+  }
+}
+
+TEST(VirtualEye, AsPublishedKeepsTheWidthOfAPoleAtTheSurface) {
+  for (const double lean : {0.0, 0.2}) {
+    const Pole pole({lean, 0.9, 0}, {-lean, 0.05, 0}, 0.05f);
+    const View view = from_height(1.5f);
+    const Image<vec3> picture = pole.picture(view, by_eyes());
+    const auto width = [&](int row) {
+      float sum = 0;
+      for (int x = 0; x < view.width; ++x) sum += 1.0f - picture(x, row).y;
+      return sum;
+    };
+    // The waterline's nearest point, and rows above and below of the whole ellipse around it.
+    const int row = static_cast<int>(pictured(view, pole.under(0) + glm::dvec3(0, 0, 0.05)).y);
+    EXPECT_NEAR(width(row + 6) / width(row - 25), 1.0f, 0.12f) << lean;
   }
 }
 
@@ -275,6 +293,101 @@ TEST(VirtualEye, DrawsTheSameBitsWithAnyNumberOfThreads) {
     second = pole.picture(view, by_eyes());
   }
   ASSERT_EQ(first.size(), second.size());
+  EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(vec3)), 0);
+}
+
+/// A lit tank with a post through waves.
+struct LitTank {
+  Scene scene{Environment{EnvironmentOptions{}}, Ground{}};
+  HeightField field;
+  Material material = material_preset("water", 1.0f);
+
+  LitTank() {
+    Tank tank;
+    tank.style = TankStyle::tiled;
+    tank.inside = {{0, 0, 0}, {1, 0.6f, 1}};
+    scene.set_tank(tank);
+    scene.set_solids({{make_solid(cylinder_mesh({0.5f, 0, 0.5f}, {0.55f, 0.5f, 0.45f}, 0.06f)), glm::mat4(1.0f),
+                       SolidMaterial{vec3{0.7f, 0.3f, 0.1f}, "", 1, 1.5f}}});
+    WaveFieldOptions waves;
+    waves.region = {{0, 0, 0}, {1, 0.3f, 1}};
+    waves.step = 1.0f / 64;
+    waves.waves.resize(1);
+    waves.waves[0].amplitude = 0.01f;
+    waves.waves[0].wavelength = 0.4f;
+    field = height_field(waves, 0);
+  }
+  Image<vec3> picture(const View& view, const OpticsOptions& options) const {
+    HeightField bent = field;
+    const auto objects = water_objects(bent, scene, options.eyes);
+    adapt(bent, adaptations(objects, options.eyes));
+    const auto surface = make_height_field_surface(std::move(bent));
+    const auto eyes = make_virtual_eyes(view, *surface->height_field(), scene, objects, material, options.eyes);
+    return shade(view, {}, surface->see(view), scene, material, {options, nullptr, surface.get(), eyes.get()});
+  }
+};
+
+View over_tank(int size) {
+  return perspective_view({0.6f, 1.3f, 2.0f}, {0.5f, 0.25f, 0.5f}, {0, 1, 0}, 0.45f, size, size);
+}
+
+TEST(VirtualEye, ShowsWhatStandsStillAsSingleRaysDo) {
+  LitTank tank;
+  tank.scene.set_solids({});
+  OpticsOptions options;
+  options.refraction = RefractionMethod::ray_traced;
+  options.bounces = 1;
+  const Image<vec3> traced = tank.picture(over_tank(160), options);
+  options.refraction = RefractionMethod::virtual_eye;
+  const Image<vec3> picture = tank.picture(over_tank(160), options);
+  double sum = 0;
+  int far_off = 0;
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    const float difference = std::abs(picture[i].y - traced[i].y);
+    sum += static_cast<double>(difference);
+    far_off += difference > 0.1f;
+  }
+  RecordProperty("mean_difference", std::to_string(sum / static_cast<double>(picture.size())));
+  // Shadows have edges as wide as the tables' steps.
+  EXPECT_LT(sum / static_cast<double>(picture.size()), 0.015);
+  EXPECT_LT(far_off, static_cast<int>(picture.size() / 40));
+}
+
+TEST(VirtualEye, KeepsAPostWholeThroughWavesByDefault) {
+  // The picture with its object differs little from single rays into the whole scene.
+  const LitTank tank;
+  OpticsOptions options;
+  options.refraction = RefractionMethod::ray_traced;
+  options.bounces = 1;
+  const Image<vec3> traced = tank.picture(over_tank(160), options);
+  options.refraction = RefractionMethod::virtual_eye;
+  const auto far_off = [&] {
+    const Image<vec3> picture = tank.picture(over_tank(160), options);
+    int count = 0;
+    for (std::size_t i = 0; i < picture.size(); ++i) count += std::abs(picture[i].z - traced[i].z) > 0.1f;
+    return count;
+  };
+  const int by_default = far_off();
+  options.eyes.object_position = false;
+  const int published = far_off();
+  RecordProperty("far_off", std::to_string(by_default) + " of 25600, as published " + std::to_string(published));
+  EXPECT_LT(by_default, 800);
+  EXPECT_LT(by_default, published);
+}
+
+TEST(VirtualEye, DrawsTheSameBitsOfALitTankWithAnyNumberOfThreads) {
+  const LitTank tank;
+  OpticsOptions options;
+  options.refraction = RefractionMethod::virtual_eye;
+  Image<vec3> first, second;
+  {
+    const ThreadLimit limit(1);
+    first = tank.picture(over_tank(90), options);
+  }
+  {
+    const ThreadLimit limit(5);
+    second = tank.picture(over_tank(90), options);
+  }
   EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(vec3)), 0);
 }
 
