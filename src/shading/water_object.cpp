@@ -19,6 +19,8 @@ constexpr float kClose = 0.25f;
 /// Width of the ring around an outline in which the water's height and normal are averaged, of the outline's size.
 constexpr float kRing = 0.5f;
 constexpr int kRingPoints = 16;
+/// Extent of the plane and of the surface's way back to itself around objects looked up by direction, of their depth.
+constexpr float kByDirectionPlane = 0.7f, kByDirectionWidth = 0.6f;
 
 struct Mean {
   vec3 point{0.0f}, normal{0.0f};
@@ -192,9 +194,17 @@ std::vector<PlaneAdaptation> adaptations(std::span<const WaterObject> objects, c
     if (!object.pierces || object.outline.size() < 3) continue;
     const float size = size_of(object.outline);
     if (!(size > 0)) continue;
-    // A little of the plane itself all around, so that what is seen next to the object is seen through it.
-    planes.push_back({object.plane_point, object.plane_normal, grown_outline(object.outline, 0.15f * size),
-                      options.adaptation_width > 0 ? options.adaptation_width : 0.75f * size});
+    // A little of the plane itself all around, so that what is seen next to the object is seen through it. By direction
+    // alone waves tear the object's picture, which reaches about as far as the object is deep.
+    float margin = 0.15f * size, width = 0.75f * size;
+    if (!options.object_position) {
+      const vec3 deepest = object.axis_end - object.plane_point;
+      const float depth = std::max(0.0f, -glm::dot(deepest, object.plane_normal));
+      margin = std::max(margin, kByDirectionPlane * depth);
+      width = std::max(width, kByDirectionWidth * depth);
+    }
+    planes.push_back({object.plane_point, object.plane_normal, grown_outline(object.outline, margin),
+                      options.adaptation_width > 0 ? options.adaptation_width : width});
   }
   return planes;
 }
