@@ -11,9 +11,11 @@ namespace {
 
 constexpr int kLeastSize = 16, kMostSize = 8192;
 /// Faces are no larger than this unless it is asked for.
-constexpr int kDefaultMostSize = 2048;
+constexpr int kDefaultMostSize = 1536;
 /// Pixels of the picture between points at which light on planes is held.
-constexpr float kLightPixels = 2.0f;
+constexpr float kLightPixels = 3.0f;
+/// And steps along the water at least.
+constexpr float kLeastSteps = 192;
 
 void require(bool holds, const char* name, double value, const char* range) {
   if (!holds)
@@ -104,7 +106,8 @@ std::shared_ptr<const VirtualEyes> make_virtual_eyes(const View& view, const Hei
     }
   }
   const float away = glm::length(view.eye - field.bounds().centre());
-  const float step = std::max(kLightPixels * view.pixel_size(away), 1e-6f);
+  const float longest = std::max({extent.x, extent.y, extent.z});
+  const float step = std::clamp(kLightPixels * view.pixel_size(away), 1e-6f, std::max(longest / kLeastSteps, 1e-6f));
   return std::make_shared<const VirtualEyes>(inputs, region, step);
 }
 
