@@ -87,39 +87,6 @@ std::optional<vec3> PlaneLight::at(vec3 point, vec3 normal) const {
   return std::nullopt;
 }
 
-void PlaneLight::radiance(const Scene& scene, std::span<const Ray> rays, Beam beam, std::span<vec3> radiance,
-                          std::span<float> distance) const {
-  thread_local std::vector<SolidHit> hits;
-  thread_local std::vector<Ray> others;
-  thread_local std::vector<std::size_t> which;
-  thread_local std::vector<vec3> shown;
-  hits.resize(rays.size());
-  others.clear();
-  which.clear();
-  scene.hits(rays, beam, hits);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const SolidHit& hit = hits[i];
-    distance[i] = hit.distance;
-    if (!hit.found()) {
-      radiance[i] = scene.environment().radiance(rays[i].direction);
-      continue;
-    }
-    std::optional<vec3> light;
-    if (!(hit.roughness < 1.0f) && !(hit.presence < 1.0f))
-      light = at(rays[i].origin + hit.distance * rays[i].direction, hit.face_normal);
-    if (light) {
-      radiance[i] = std::numbers::inv_pi_v<float> * hit.albedo * *light;
-    } else {
-      others.push_back(rays[i]);
-      which.push_back(i);
-    }
-  }
-  if (others.empty()) return;
-  shown.resize(others.size());
-  scene.radiance(others, beam, shown);
-  for (std::size_t k = 0; k < which.size(); ++k) radiance[which[k]] = shown[k];
-}
-
 const PlaneLight::Square& PlaneLight::square(const Plane& plane, int x, int y) const {
   auto& place = const_cast<std::atomic<const Square*>&>(
       plane

@@ -28,10 +28,6 @@ class PlaneLight {
   /// Irradiance at a point on one of the planes; nothing where it is on none of them.
   /// @param normal  unit, of the lit side
   std::optional<vec3> at(vec3 point, vec3 normal) const;
-  /// Scene::radiance() of the same scene, planes by the tables.
-  /// @param distance  as there; m
-  void radiance(const Scene& scene, std::span<const Ray> rays, Beam beam, std::span<vec3> radiance,
-                std::span<float> distance) const;
 
  private:
   using Square = std::array<vec3, static_cast<std::size_t>(kTile) * kTile>;

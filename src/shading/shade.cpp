@@ -223,10 +223,7 @@ class Shading {
     if (!behind_) {
       radiance.resize(rays.size());
       distances.resize(rays.size());
-      if (optics_.eyes && optics_.options.refraction == RefractionMethod::virtual_eye)
-        optics_.eyes->light().radiance(scene_, rays, beam_, radiance, distances);
-      else
-        scene_.radiance(rays, beam_, radiance, distances);
+      scene_.radiance(rays, beam_, radiance, distances);
     }
     for (std::size_t k = 0; k < dry.size(); ++k) {
       const std::size_t i = dry[k];

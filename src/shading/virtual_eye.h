@@ -91,7 +91,6 @@ class VirtualEyes {
   const EyeSide& refracted() const { return refracted_; }
   const EyeSide& reflected() const { return reflected_; }
   const ApproximatingPlane& plane() const { return plane_; }
-  const PlaneLight& light() const { return light_; }
   /// Whether sides of the water are looked through like its surface: everything is found by its place, and the water
   /// ends at walls.
   bool sides_too() const { return sides_too_; }
