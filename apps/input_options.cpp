@@ -77,6 +77,7 @@ FrameSequence InputOptions::find_in(const SceneFile& scene, bool quiet) const {
 }
 
 FrameSequence InputOptions::select(FrameSequence found) const {
+  for (std::size_t i = 0; i < found.frames.size(); ++i) found.frames[i].place = i;
   if (first_number || last_number)
     std::erase_if(found.frames, [&](const FramePath& frame) {
       return frame.number && (*frame.number < first_number.value_or(*frame.number) ||

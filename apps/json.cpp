@@ -1,12 +1,9 @@
 #include "json.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 namespace meniscus::apps {
 
@@ -46,19 +43,6 @@ Json json_of(const SequenceReport& report) {
   json["failed"] = report.failed;
   json["peak_rss_bytes"] = peak_rss_bytes();
   return json;
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  const std::string temporary = fmt::format("{}.{}.tmp", path, ::getpid());
-  std::error_code error;
-  if (std::ofstream(temporary, std::ios::binary) << text << std::flush)
-    std::filesystem::rename(temporary, path, error);
-  else
-    error = std::make_error_code(std::errc::io_error);
-  if (!error) return;
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
-  throw Error(ErrorCode::io_failed, {"the file cannot be written", {}, {}, path, {}, {}, "write to another place"});
 }
 
 std::string text_of(const Json& json, int indent) {

@@ -17,9 +17,6 @@ Json json_of(const StageTimes& times);
 /// {"frames": [...], "peak_rss_bytes": N}
 Json json_of(const SequenceReport& report);
 
-/// Writes the text to a temporary file and renames it. @throws Error io_failed naming the path
-void write_text(const std::string& path, const std::string& text);
-
 /// dump() that replaces what is not UTF-8, as file names may be.
 std::string text_of(const Json& json, int indent = -1);
 

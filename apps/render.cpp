@@ -69,11 +69,20 @@ SceneFile scene_of(RenderArguments& arguments) {
   return scene;
 }
 
+/// Refuses what cannot be meant together.
+void check_together(const PictureOptions& picture) {
+  if (picture.heights && picture.method != SurfaceMethod::height_field)
+    throw UsageError("--surface: the scene's water.heights is a height field, and no particles are there");
+  if (picture.optics.refraction == RefractionMethod::virtual_eye && picture.camera.orthographic_height && !picture.path)
+    throw UsageError("--orthographic: virtual eyes (--refraction virtual_eye) need a perspective camera");
+}
+
 void render(RenderArguments& arguments) {
   // All that can be wrong with the arguments shows before the work.
   const SceneFile scene = scene_of(arguments);
   static_cast<void>(OutputTarget(arguments.sequence.output));
   PictureOptions picture = arguments.picture.options(arguments.input, scene.picture);
+  check_together(picture);
   if (!picture.material.empty()) static_cast<void>(material_preset(picture.material, 1.0f));
   if (!picture.environment_hdr.empty()) {
     EnvironmentOptions environment;

@@ -17,6 +17,7 @@ Particles read_particles(const std::string& path);
 struct FramePath {
   std::string path;
   std::optional<std::int64_t> number;  ///< the frame number in its name, if it has one
+  std::optional<std::size_t> place;    ///< from 0, in the sequence that it was picked from; none: it was not picked
 };
 
 /// What is known of a sequence that stands in no files before any of its frames is made.

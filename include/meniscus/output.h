@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include "meniscus/base.h"
 #include "meniscus/image.h"
@@ -56,6 +57,9 @@ class VideoWriter {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// Writes a text file, whole or not at all. @throws Error io_failed naming the path
+void write_text(const std::string& path, std::string_view text);
 
 /// Makes SIGINT, SIGTERM and SIGHUP remove the temporary files that are open and then end the process as they do by
 /// default. For programs; the library alone leaves signals as they are.

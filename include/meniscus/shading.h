@@ -52,13 +52,14 @@ struct VirtualEyeOptions {
   float trapezium_a = 0;         ///< m; half width at the object; 0: by its size
   float trapezium_b = 0;         ///< m; half width at the eye's end; 0: by its size
   bool per_point = false;        ///< each point from its own virtual eye: for wide objects, beyond the paper
-  /// Objects are looked up where the ray passes them, not by its direction alone: they keep together under waves. Beyond
-  /// the paper; needs neither scale_correction nor per_point, which then do nothing. Off: by direction, as published.
+  /// Objects are looked up where the ray passes them, not by its direction alone: they keep together under waves.
+  /// Beyond the paper; needs neither scale_correction nor per_point, which then do nothing. Off: by direction, as
+  /// published.
   bool object_position = true;
   /// What stands still is found where the ray meets it. Off: looked up in a map by direction alone, as published.
   bool static_position = true;
-  float adaptation_width = 0;    ///< m beyond an object's outline; 0: by its size
-  float combine_distance = -1;   ///< m; objects nearer to each other share an eye; negative: default
+  float adaptation_width = 0;   ///< m beyond an object's outline; 0: by its size
+  float combine_distance = -1;  ///< m; objects nearer to each other share an eye; negative: default
 };
 
 struct OpticsOptions {
@@ -82,9 +83,9 @@ struct WaterObject {
   /// is the one along which the object goes deepest.
   vec3 box_centre{0.0f};
   std::array<vec3, 3> half_axes{};
-  std::vector<vec2> outline;            ///< convex, horizontal, m, as in PlaneAdaptation
-  bool pierces = false;                 ///< stands through the surface
-  bool under = false;                   ///< some of it is under the surface
+  std::vector<vec2> outline;  ///< convex, horizontal, m, as in PlaneAdaptation
+  bool pierces = false;       ///< stands through the surface
+  bool under = false;         ///< some of it is under the surface
 };
 /// Solids of the scene that are seen in or through the water, close ones combined.    [Cords2008] 2.2, 2.3
 std::vector<WaterObject> water_objects(const HeightField& field, const Scene& scene, const VirtualEyeOptions& options);

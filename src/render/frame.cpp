@@ -120,8 +120,8 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
   if (!surface->can_march() && optics.options.refraction == RefractionMethod::ray_traced)
     optics.options.refraction = RefractionMethod::thickness;
   std::shared_ptr<const VirtualEyes> eyes;
-  if (settings.optics.refraction == RefractionMethod::virtual_eye && settings.material.transparent) {
-    if (surface->bounds().empty()) {
+  if (settings.optics.refraction == RefractionMethod::virtual_eye) {
+    if (surface->bounds().empty() || !settings.material.transparent) {
       optics.options.refraction = RefractionMethod::thickness;  // nothing is refracted
     } else {
       eyes = make_virtual_eyes(view, water.columns(), scene, water.objects, settings.material, settings.optics.eyes,

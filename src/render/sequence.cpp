@@ -14,6 +14,7 @@ namespace {
 struct Shot {
   FramePath frame;
   std::int64_t number = 0;
+  std::size_t place = 0;  ///< which of a body's transforms is meant
 };
 
 /// Numbers in the file names serve if every frame has one and none twice; else frames are counted from 0.
@@ -21,7 +22,7 @@ std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable)
   std::vector<Shot> shots;
   if (sequence.frames.size() == 1 && turntable > 0) {
     for (std::size_t i = 0; i < turntable; ++i)
-      shots.push_back({sequence.frames.front(), static_cast<std::int64_t>(i)});
+      shots.push_back({sequence.frames.front(), static_cast<std::int64_t>(i), i});
     return shots;
   }
   std::set<std::int64_t> numbers;
@@ -29,7 +30,8 @@ std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable)
     if (frame.number) numbers.insert(*frame.number);
   const bool by_name = numbers.size() == sequence.frames.size();
   for (const FramePath& frame : sequence.frames)
-    shots.push_back({frame, by_name ? *frame.number : static_cast<std::int64_t>(shots.size())});
+    shots.push_back(
+        {frame, by_name ? *frame.number : static_cast<std::int64_t>(shots.size()), frame.place.value_or(shots.size())});
   return shots;
 }
 
@@ -92,7 +94,7 @@ class SequenceRun {
     std::vector<std::string> missing;
     for (std::size_t i = 0; i < shots.size() && most < picture_.bodies.size(); ++i) {
       std::vector<std::string> notes;
-      const std::vector<PlacedSolid> placed = bodies_->at(i, shots[i].number, notes);
+      const std::vector<PlacedSolid> placed = bodies_->at(shots[i].place, shots[i].number, notes);
       if (i == 0) {
         for (const PlacedSolid& body : placed) picture_.bodies_bounds.add(bounds_of(body));
         missing = notes;
@@ -167,7 +169,7 @@ class SequenceRun {
     std::vector<std::optional<glm::mat4>> moved;
     if (sequence_.body_transforms) moved = sequence_.body_transforms();
     const std::size_t notes = report.notes.size();
-    settings_->solids = bodies_->at(index, shot.number, report.notes, moved);
+    settings_->solids = bodies_->at(shot.place, shot.number, report.notes, moved);
     if (options_.strict && report.notes.size() > notes) throw Error(ErrorCode::not_found, report.notes.back());
     FramePicture frame = render_frame(*particles, *settings_);
     report.particles = frame.particles;

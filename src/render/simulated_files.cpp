@@ -1,11 +1,9 @@
 /// Simulated frames as files, and the ways of their bodies.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 
 #include "meniscus/render.h"
 
@@ -67,19 +65,6 @@ std::string file_name_of(const BodyOptions& body, std::size_t index) {
   return name;
 }
 
-void write_whole(const std::string& path, const std::string& text) {
-  const std::string temporary = fmt::format("{}.{}.tmp", path, ::getpid());
-  std::error_code error;
-  if (std::ofstream(temporary, std::ios::binary) << text << std::flush)
-    std::filesystem::rename(temporary, path, error);
-  else
-    error = std::make_error_code(std::errc::io_error);
-  if (!error) return;
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
-  throw Error(ErrorCode::io_failed, {"the file cannot be written", {}, {}, path, {}, {}, "write to another place"});
-}
-
 }  // namespace
 
 SimulationReport write_simulation(SimulatedScene& scene, std::span<const BodyOptions> bodies, const std::string& output,
@@ -122,7 +107,7 @@ SimulationReport write_simulation(SimulatedScene& scene, std::span<const BodyOpt
     if (std::find(report.ways.begin(), report.ways.end(), (folder / name).string()) != report.ways.end())
       name = fmt::format("body_{}_way.json", body);
     way = (folder / name).string();
-    write_whole(way, way_text(transforms, body));
+    write_text(way, way_text(transforms, body));
   }
   return report;
 }

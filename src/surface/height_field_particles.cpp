@@ -22,14 +22,18 @@ constexpr float kDrop = 4.0f;        ///< spacings; default thickness of drops
               ErrorDetail{std::move(problem), std::move(expected), std::move(found), {}, {}, {}, {}});
 }
 
+/// A column sums over all particles within the iso-radius: beyond this many spacings nothing is gained.
+constexpr float kLargestRadius_rel = 12;
+
 HeightFieldOptions resolved(const HeightFieldOptions& given, const Particles& particles,
                             std::span<const vec3> colours) {
   const auto length = [](float value) { return value >= 0 && std::isfinite(value); };
   if (!(given.spacing > 0) || !std::isfinite(given.spacing))
     fail("the spacing of the particles is out of range", "more than 0 m", fmt::format("{} m", given.spacing));
-  if (!length(given.iso_radius) || (given.iso_radius > 0 && given.iso_radius < 0.5f * given.spacing))
-    fail("the iso-radius is out of range", "0 for the default, or half a spacing or more",
-         fmt::format("{} m", given.iso_radius));
+  if (!length(given.iso_radius) || (given.iso_radius > 0 && given.iso_radius < 0.5f * given.spacing) ||
+      given.iso_radius > kLargestRadius_rel * given.spacing)
+    fail("the iso-radius is out of range", fmt::format("0 for the default, or 0.5 to {} spacings", kLargestRadius_rel),
+         fmt::format("{} m at a spacing of {} m", given.iso_radius, given.spacing));
   if (!length(given.iso)) fail("the iso-value is out of range", "more than 0", fmt::format("{}", given.iso));
   if (!length(given.step))
     fail("the step is out of range", "0 m for the default or more", fmt::format("{} m", given.step));

@@ -158,10 +158,13 @@ HeightField height_field(const WaveFieldOptions& options, double time) {
   if (!(depth > 0))
     fail("a wave field has no depth", "a region that is more than 0 m high", fmt::format("{} m", depth));
   if (!(amplitudes < depth))
-    fail("the waves reach the floor", fmt::format("amplitudes of less than {} m together", depth),
+    fail("the waves reach the floor", fmt::format("amplitudes of less than {} m together", static_cast<float>(depth)),
          fmt::format("{} m", amplitudes));
   const float longer = std::max(extent[axes.a], extent[axes.b]);
   const float step = options.step != 0 ? options.step : std::max(0.125f * shortest, longer / 256.0f);
+  if (step > 0.5f * shortest)
+    fail("a wave is too short for the columns of its field",
+         fmt::format("two columns a wavelength, {} m and more", 2 * step), fmt::format("{} m", shortest));
   HeightField field = blank_field(options.up, options.region, std::isfinite(step) ? step : longer / 256.0f);
   const std::vector<Train> trains = trains_of(options.waves, depth, time);
   const int width = field.height.width(), height = field.height.height();

@@ -67,6 +67,25 @@ TEST(SceneFile, ShowsItsMeshes) {
   EXPECT_GT(mean_difference(read_png(folder / "empty.png"), read_png(folder / "ball.png")), 1.0);
 }
 
+TEST(SceneFile, PlacesBodiesByTheWholeSequenceWhateverPartIsDrawn) {
+  const Folder folder;
+  const auto scene = [](const std::string& frames) {
+    return "{\"water\": {\"waves\": {\"particles\": 500, \"frames\": 3}}, \"picture\": {\"size\": [48, 32]},\n"
+           "\"camera\": {\"target\": [1, 0.4, 0.5], \"distance\": 4}, \"meshes\": [{\"shape\": \"sphere\", "
+           "\"frames\": [" +
+           frames + "]}]}\n";
+  };
+  const std::string far_off = "{\"translate\": [500, 0, 0]}", here = "{\"translate\": [1, 0.8, 0.5]}";
+  folder.write("moving.json", scene(far_off + ", " + far_off + ", " + here));
+  folder.write("still.json", scene(here));
+  for (const std::string name : {"moving", "still"}) {
+    const Outcome run =
+        run_program({"render", folder / (name + ".json"), "-o", folder / (name + ".png"), "--frames", "2:3"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  EXPECT_EQ(mean_difference(read_png(folder / "moving.png"), read_png(folder / "still.png")), 0);
+}
+
 TEST(SceneFile, NamesLineAndFieldOfAMistake) {
   const Folder folder;
   folder.write_block("block.xyz");

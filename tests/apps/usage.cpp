@@ -36,6 +36,9 @@ TEST(WrongUsage, ExitsWithTwoAndOneLine) {
   const Folder folder;
   folder.write_block("a.xyz", 2);
   folder.write_block("b.xyz", 2);
+  folder.write("waves.json",
+               "{\"water\": {\"heights\": {\"waves\": [{\"amplitude\": 0.01}], \"region\": [[0, 0, 0], [1, "
+               "0.5, 1]]}}}");
   const std::string frame = folder / "a.xyz", out = folder / "out.png";
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{}, "subcommand"},
@@ -66,6 +69,8 @@ TEST(WrongUsage, ExitsWithTwoAndOneLine) {
       {{"render", frame, "-o", folder / "out.jpg"}, "out.jpg"},
       {{"render", frame, "-o", folder / "out"}, ".mp4"},
       {{"render", folder.path(), "-o", out}, "{}"},
+      {{"render", frame, "-o", out, "--refraction", "virtual_eye", "--orthographic", "2"}, "--orthographic"},
+      {{"render", folder / "waves.json", "-o", out, "--surface", "raycast"}, "--surface"},
       {{"bench"}, "subcommand"},
       {{"bench", "cooking"}, "cooking"},
       {{"bench", "raycast", "--particles", "0"}, "--particles"},

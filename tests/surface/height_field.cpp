@@ -214,6 +214,9 @@ TEST(HeightField, RefusesWhatItCannotUse) {
   bad = tank_options(3, 3);
   bad.iso = -1;
   EXPECT_THROW(height_field(calm(3, 3, 3), bad), Error);
+  bad = tank_options(3, 3);
+  bad.iso_radius = 100 * bad.spacing;
+  EXPECT_THROW(height_field(calm(3, 3, 3), bad), Error);
   HeightField field = field_of(5, bumpy);
   field.height(2, 2) = std::nanf("");
   EXPECT_THROW(make_height_field_surface(field), Error);

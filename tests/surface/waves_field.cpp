@@ -72,6 +72,8 @@ TEST(WaveField, RefusesWavesOutOfRange) {
   EXPECT_THROW(height_field(field_with({train(WaveTrain::Kind::sine, 0.02f, 0, 0)}), 0), Error);
   EXPECT_THROW(height_field(field_with({train(WaveTrain::Kind::sine, 0.7f, 1, 0)}), 0), Error);
   EXPECT_THROW(height_field(field_with({train(WaveTrain::Kind::sine, -0.1f, 1, 0)}), 0), Error);
+  EXPECT_THROW(height_field(field_with({train(WaveTrain::Kind::sine, 0.01f, 1e-4f, 0)}), 0),
+               Error);  // no columns for it
 }
 
 }  // namespace
