@@ -111,6 +111,19 @@ FrameSequence frames_of_wildcard(const std::string& wildcard) {
   return sequence;
 }
 
+/// "{:04}" and "{:04d}" are how many digits a number is written with: read is any number, as by "{}".
+std::string without_widths(const std::string& pattern) {
+  std::string plain;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    plain += pattern[i];
+    if (pattern[i] != '{' || i + 1 == pattern.size() || pattern[i + 1] != ':') continue;
+    std::size_t end = pattern.find_first_not_of("0123456789", i + 2);
+    if (end != std::string::npos && pattern[end] == 'd') ++end;
+    if (end < pattern.size() && pattern[end] == '}') i = end - 1;
+  }
+  return plain;
+}
+
 /// Frames of "directory/fluid_{}.bgeo" or "frame_{}/fluid.vtk".
 FrameSequence frames_of_pattern(const std::string& pattern) {
   const std::size_t braces = pattern.find("{}");
@@ -193,8 +206,8 @@ FrameSequence find_frames(std::span<const std::string> arguments) {
     flush();
     if (is_directory(argument)) {
       append(sequence, frames_of_directory(argument));
-    } else if (argument.find("{}") != std::string::npos) {
-      append(sequence, frames_of_pattern(argument));
+    } else if (const std::string pattern = without_widths(argument); pattern.find("{}") != std::string::npos) {
+      append(sequence, frames_of_pattern(pattern));
     } else if (argument.find_first_of("*?[") != std::string::npos) {
       append(sequence, frames_of_wildcard(argument));
     } else {

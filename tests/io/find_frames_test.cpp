@@ -179,6 +179,14 @@ TEST(FindFrames, ExpandsWildcardsAndBraces) {
   EXPECT_EQ(found({scratch.path("d/f_{}.vtk"), scratch.path("d/f_x.vtk")}).frames.size(), 4u);
 }
 
+TEST(FindFrames, TakesPatternsWithAWidth) {
+  const Scratch scratch;
+  for (const char* n : {"0001", "0002", "12345"}) scratch.write(std::string("d/p_") + n + ".xyz", kRow);
+  for (const char* pattern : {"d/p_{:04}.xyz", "d/p_{:04d}.xyz"})
+    EXPECT_EQ(found({scratch.path(pattern)}).frames.size(), 3u) << pattern;
+  EXPECT_THROW(found({scratch.path("d/p_{:x}.xyz")}), Error);
+}
+
 TEST(FindFrames, ExpandsBracesInTheNameOfADirectory) {
   const Scratch scratch;
   for (const int i : {2, 10, 1}) scratch.write("step_" + std::to_string(i) + "/water.vtk", kRow);
