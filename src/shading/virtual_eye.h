@@ -46,7 +46,6 @@ class EyeSide {
   /// @param beam   of the rays
   /// @param looks  one a ray, overwritten
   void look(std::span<const Ray> rays, Beam beam, std::span<EyeLook> looks) const;
-  const CubeMap& objects_map() const { return *object_map_; }
   const std::vector<VirtualEye>& eyes() const { return eyes_; }
 
  private:
@@ -57,8 +56,10 @@ class EyeSide {
     vec3 centre{0.0f};
     float radius = 0;
     vec3 axis_top{0.0f}, axis{0.0f};  ///< from one end of the main axis to the other, m
+    std::size_t map = 0;              ///< that shows it
   };
-  bool draw_objects(std::span<const vec3> directions, std::span<MapTexel> texels) const;
+  void share_maps(int size);
+  bool draw_objects(std::size_t map, std::span<const vec3> directions, std::span<MapTexel> texels) const;
   bool draw_still(std::span<const vec3> directions, std::span<MapTexel> texels) const;
   void look_still(std::span<const Ray> rays, Beam beam, std::span<EyeLook> looks) const;
   void look_still_by_direction(vec3 direction, EyeLook& look) const;
@@ -75,7 +76,10 @@ class EyeSide {
   bool per_point_ = false, by_position_ = true, objects_by_position_ = false, nothing_still_ = false;
   const PlaneLight* light_;
   float slack_ = 0;
-  std::unique_ptr<CubeMap> object_map_, still_map_;
+  /// Looked up by position, objects that hide each other from their own virtual eyes need not do so along a ray: they
+  /// are in different maps. By direction there is one.
+  std::vector<std::unique_ptr<CubeMap>> object_maps_;
+  std::unique_ptr<CubeMap> still_map_;
 };
 
 class VirtualEyes {

@@ -95,4 +95,21 @@ const CubeMap::Tile* CubeMap::draw_tile(std::size_t index) const {
   return held;
 }
 
+std::vector<std::size_t> map_layers(std::span<const Cone> cones) {
+  std::vector<std::size_t> layers(cones.size());
+  std::vector<std::vector<std::size_t>> held;  // cones of each layer
+  for (std::size_t i = 0; i < cones.size(); ++i) {
+    const auto meets = [&](std::size_t other) {
+      const float cosine = std::clamp(glm::dot(cones[i].axis, cones[other].axis), -1.0f, 1.0f);
+      return std::acos(cosine) < cones[i].half_angle + cones[other].half_angle;
+    };
+    std::size_t layer = 0;
+    while (layer < held.size() && std::any_of(held[layer].begin(), held[layer].end(), meets)) ++layer;
+    if (layer == held.size()) held.emplace_back();
+    held[layer].push_back(i);
+    layers[i] = layer;
+  }
+  return layers;
+}
+
 }  // namespace meniscus

@@ -69,4 +69,13 @@ class CubeMap {
   mutable std::atomic<std::size_t> drawn_{0}, filled_{0};
 };
 
+/// Directions no farther than an angle from an axis.
+struct Cone {
+  vec3 axis{0, 0, 1};    ///< unit
+  float half_angle = 0;  ///< radians
+};
+
+/// A map for each cone, so that no two that meet share one: each takes the first in which it is free.
+std::vector<std::size_t> map_layers(std::span<const Cone> cones);
+
 }  // namespace meniscus

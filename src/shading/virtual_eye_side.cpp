@@ -19,6 +19,8 @@ constexpr float kBeforePlane = 1.5f;
 constexpr float kShortly = 1e-4f;
 /// Lookups of an object by position: each but the last moves along the ray to the face that is seen.
 constexpr int kPasses = 3;
+/// Texels between objects in the same map at least.
+constexpr float kApart = 4.0f;
 
 /// The scene without some of its solids.
 Scene without(const Scene& scene, std::span<const WaterObject> objects) {
@@ -100,17 +102,39 @@ EyeSide::EyeSide(const Inputs& inputs, bool reflected)
 
   nothing_still_ = above_side && inputs.scene.tank().style == TankStyle::none && still_scene_.solids().empty();
 
-  object_map_ = std::make_unique<CubeMap>(
-      inputs.size, [this](auto directions, auto texels) { return draw_objects(directions, texels); });
+  share_maps(inputs.size);
   if (!by_position_)
     still_map_ = std::make_unique<CubeMap>(
         inputs.size, [this](auto directions, auto texels) { return draw_still(directions, texels); });
 }
 
-bool EyeSide::draw_objects(std::span<const vec3> directions, std::span<MapTexel> texels) const {
+void EyeSide::share_maps(int size) {
+  std::size_t count = 1;
+  if (objects_by_position_) {
+    std::vector<Cone> cones;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const vec3 way = bodies_[k].centre - eyes_[k].position();
+      const float length = glm::length(way), texel = 2.0f / static_cast<float>(size);
+      if (length > bodies_[k].radius)
+        cones.push_back({way / length, std::asin(bodies_[k].radius / length) + 0.5f * kApart * texel});
+      else
+        cones.push_back({vec3{0, 0, 1}, 2 * std::numbers::pi_v<float>});
+    }
+    const std::vector<std::size_t> layers = map_layers(cones);
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+      bodies_[k].map = layers[k];
+      count = std::max(count, layers[k] + 1);
+    }
+  }
+  for (std::size_t map = 0; map < count; ++map)
+    object_maps_.push_back(std::make_unique<CubeMap>(
+        size, [this, map](auto directions, auto texels) { return draw_objects(map, directions, texels); }));
+}
+
+bool EyeSide::draw_objects(std::size_t map, std::span<const vec3> directions, std::span<MapTexel> texels) const {
   const vec3 middle = glm::normalize(directions.front() + directions.back());
   const float half_angle = std::acos(std::clamp(glm::dot(middle, directions.front()), -1.0f, 1.0f)) * 1.5f;
-  const float texel = object_map_->texel_angle();
+  const float texel = object_maps_[map]->texel_angle();
   std::vector<float> nearest;  // m in the map
   std::vector<Ray> seen_by(directions.size()), rays;
   std::vector<float> beyond(directions.size()), starts, scales;
@@ -118,6 +142,7 @@ bool EyeSide::draw_objects(std::span<const vec3> directions, std::span<MapTexel>
   std::vector<SolidHit> hits;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Body& body = bodies_[k];
+    if (body.map != map) continue;
     if (!per_point_) {
       const vec3 way = body.centre - eyes_[k].position();
       const float length = glm::length(way);
@@ -249,7 +274,7 @@ void EyeSide::add(const CubeMap::Cell& cell, vec3 from, std::int32_t only, EyeLo
 }
 
 void EyeSide::look_by_direction(vec3 from, vec3 direction, EyeLook& look) const {
-  const CubeMap::Cell cell = object_map_->at(direction);
+  const CubeMap::Cell cell = object_maps_.front()->at(direction);
   if (cell.first) add(cell, from, -1, look);
 }
 
@@ -273,7 +298,7 @@ void EyeSide::look_by_position(vec3 from, vec3 direction, EyeLook& look) const {
     CubeMap::Cell cell;
     for (int pass = 0; pass < kPasses; ++pass) {
       const vec3 towards = from + distance * direction - eye;
-      cell = object_map_->at(towards);
+      cell = object_maps_[body.map]->at(towards);
       if (!cell.first || pass == kPasses - 1) break;
       const MapTexel& texel = cell.nearest();
       if (texel.object != body.index) break;
@@ -284,14 +309,18 @@ void EyeSide::look_by_position(vec3 from, vec3 direction, EyeLook& look) const {
       if (facing < -0.05f) next = glm::dot(shown - from, texel.normal) / facing;
       distance = std::clamp(next, std::max(0.0f, middle - body.radius), middle + body.radius);
     }
-    if (!cell.first || !(distance < nearest)) continue;
+    if (!cell.first) continue;
     EyeLook one;
     add(cell, from, body.index, one);
     if (!(one.object_alpha > 0)) continue;
-    nearest = distance;
-    look.object = one.object + (1.0f - one.object_alpha) * look.object;
-    look.object_alpha = one.object_alpha + (1.0f - one.object_alpha) * look.object_alpha;
-    look.object_distance = distance;
+    // Behind or before what has been found.
+    if (distance < nearest) {
+      look.object = one.object + (1.0f - one.object_alpha) * look.object;
+      look.object_distance = nearest = distance;
+    } else {
+      look.object += (1.0f - look.object_alpha) * one.object;
+    }
+    look.object_alpha += (1.0f - look.object_alpha) * one.object_alpha;
   }
 }
 

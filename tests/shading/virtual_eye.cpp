@@ -375,6 +375,45 @@ TEST(VirtualEye, KeepsAPostWholeThroughWavesByDefault) {
   EXPECT_LT(by_default, published);
 }
 
+TEST(VirtualEye, ShowsABallBehindAnotherAsSingleRaysDo) {
+  // From above, under waves; balls of different colours, the second beside, half behind and behind the first.
+  LitTank tank;
+  const auto ball = [](vec3 centre, float radius, vec3 colour) {
+    return PlacedSolid{make_solid(sphere_mesh(centre, radius)), glm::mat4(1.0f), SolidMaterial{colour, "", 1, 1.5f}};
+  };
+  OpticsOptions options;
+  for (const float side : {0.0f, 0.08f, 0.16f, 0.3f}) {
+    tank.scene.set_solids({ball({0.45f, 0.12f, 0.65f}, 0.1f, {0.9f, 0.05f, 0.05f}),
+                           ball({0.45f + side, 0.1f, 0.3f}, 0.09f, {0.05f, 0.05f, 0.9f})});
+    options.refraction = RefractionMethod::ray_traced;
+    options.bounces = 1;
+    const View view = perspective_view({0.6f, 0.9f, 1.6f}, {0.5f, 0.15f, 0.45f}, {0, 1, 0}, 0.3f, 160, 160);
+    const Image<vec3> traced = tank.picture(view, options);
+    options.refraction = RefractionMethod::virtual_eye;
+    ASSERT_EQ(water_objects(tank.field, tank.scene, options.eyes).size(), 2U);
+    const Image<vec3> picture = tank.picture(view, options);
+    int blue = 0, red = 0, wrong = 0;
+    const auto colour = [](vec3 c) { return c.z > 6.0f * c.x ? 1 : c.x > 2.5f * c.z ? 2 : 0; };
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+      blue += colour(traced[i]) == 1;
+      red += colour(traced[i]) == 2;
+      wrong += colour(picture[i]) != colour(traced[i]);
+    }
+    RecordProperty("wrong_at_" + std::to_string(static_cast<int>(side * 100)),
+                   std::to_string(wrong) + " blue " + std::to_string(blue) + " red " + std::to_string(red));
+    EXPECT_GT(blue, 100);
+    EXPECT_GT(red, 500);
+    EXPECT_LT(wrong, (blue + red) / 20) << side;
+  }
+}
+
+TEST(VirtualEye, ObjectsShareAMapOnlyWhereTheyDoNotMeet) {
+  const auto cone = [](float angle, float half) { return Cone{{std::sin(angle), 0, std::cos(angle)}, half}; };
+  const std::vector<Cone> cones{cone(0, 0.1f), cone(0.15f, 0.1f), cone(0.3f, 0.1f), cone(0.16f, 0.3f), cone(1, 0.1f)};
+  EXPECT_EQ(map_layers(cones), (std::vector<std::size_t>{0, 1, 0, 2, 0}));
+  EXPECT_TRUE(map_layers({}).empty());
+}
+
 TEST(VirtualEye, DrawsTheSameBitsOfALitTankWithAnyNumberOfThreads) {
   const LitTank tank;
   OpticsOptions options;
