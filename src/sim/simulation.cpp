@@ -161,6 +161,7 @@ Simulation::Simulation(SimulationOptions options) {
   for (const ObstacleOptions& obstacle : options.obstacles) parts_->obstacles.add(obstacle, 0);
   parts_->obstacles.appear(0);
   for (const Bounds& block : options.blocks) add_water(block);
+  check_water(options, size());
   for (const Pour& event : options.pours) pour(event);
   for (const Stir& event : options.stirs) stir(event);
   for (const Tilt& event : options.tilts) tilt(event);

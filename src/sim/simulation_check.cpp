@@ -1,6 +1,7 @@
 #include "sim/simulation_check.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -64,6 +65,20 @@ void check_block(const Bounds& block, const Bounds& tank, Axis up) {
                          open ? std::string(" up") : fmt::format(" to {:g} m", tank.high[i])),
              fmt::format("{:g} to {:g} m", block.low[i], block.high[i]), "make the block smaller or the tank larger");
   }
+}
+
+void check_water(const SimulationOptions& options, std::size_t particles) {
+  if (particles > 0 || options.blocks.empty() || !options.pours.empty()) return;
+  const float spacing = options.fluid.spacing;
+  const auto thin = [&](const Bounds& block) {
+    const vec3 extent = block.extent();
+    return !(std::min({extent.x, extent.y, extent.z}) >= 0.999f * spacing);
+  };
+  const bool all_thin = std::all_of(options.blocks.begin(), options.blocks.end(), thin);
+  refuse("the blocks of water hold no particle", "water that fills a cube of one spacing at least",
+         all_thin ? fmt::format("blocks thinner than a spacing of {:g} m", spacing)
+                  : std::string("blocks that are taken by obstacles or thinner than a spacing"),
+         "make the blocks larger or the spacing smaller, move the obstacles, or let a jet pour water");
 }
 
 void check_pour(const Pour& pour, const Bounds& tank, Axis up) {

@@ -11,6 +11,9 @@ namespace meniscus {
 void check_tank(const SimulationOptions& options);
 /// Water lies within the tank's walls and over its floor.
 void check_block(const Bounds& block, const Bounds& tank, Axis up);
+/// Blocks of which there is nothing, where no jet brings water either.
+/// @param particles  that have been made of the blocks
+void check_water(const SimulationOptions& options, std::size_t particles);
 void check_pour(const Pour& pour, const Bounds& tank, Axis up);
 void check_stir(const Stir& stir);
 void check_tilt(const Tilt& tilt);

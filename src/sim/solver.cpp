@@ -18,8 +18,8 @@ void check(const FluidOptions& options) {
   require(positive(options.spacing) && options.spacing >= 1e-5f && options.spacing <= 1e5f, "spacing",
           "0.00001 .. 100,000 m", options.spacing);
   const float support_rel = options.smoothing_length / options.spacing;
-  require(options.smoothing_length == 0.0f || (support_rel >= 1.5f && support_rel <= 4.0f), "smoothing length",
-          "1.5 .. 4 spacings", options.smoothing_length);
+  require(options.smoothing_length == 0.0f || (support_rel >= 1.5f && support_rel <= 4.0f),
+          "smoothing length in spacings", "1.5 .. 4 spacings", support_rel);
   require(options.step == 0.0f || positive(options.step), "step", "above 0 s", options.step);
   require(positive(options.rest_density), "rest density", "above 0 kg/m^3", options.rest_density);
   require(options.stiffness == 0.0f || positive(options.stiffness), "stiffness", "above 0 m^2/s^2", options.stiffness);
@@ -31,6 +31,25 @@ void check(const FluidOptions& options) {
   require(std::isfinite(options.vorticity) && options.vorticity <= 100.0f, "vorticity confinement", "at most 100",
           options.vorticity);
   require(std::isfinite(length(options.gravity)), "gravity", "finite numbers", length(options.gravity));
+}
+
+/// Water of which a second would take for ever.
+/// @param options  without gaps
+void check_pace(const FluidOptions& options, float longest) {
+  constexpr float kShortest = 1e-6f;  ///< s
+  const float shortest = std::min(options.step, longest);
+  if (shortest >= kShortest) return;
+  std::string advice = "set a longer step, or none";
+  if (!(longest >= kShortest))
+    advice = options.solver == Solver::sph ? "take less stiffness, viscosity or surface tension, or a larger spacing"
+                                           : "take less gravity or a larger spacing";
+  throw Error(ErrorCode::invalid_argument, {"the fluid's steps are too short",
+                                            fmt::format("at least {:g} s", kShortest),
+                                            fmt::format("{:.3g} s", shortest),
+                                            {},
+                                            {},
+                                            {},
+                                            std::move(advice)});
 }
 
 }  // namespace
@@ -51,6 +70,7 @@ FluidOptions with_defaults(FluidOptions options) {
     fill_pbf_defaults(options);
   constexpr float kMostParts = 100.0f;
   const float longest = longest_stable_step(options);
+  check_pace(options, longest);
   if (!(options.step <= kMostParts * longest))
     throw Error(ErrorCode::invalid_argument,
                 {"the fluid's step is too long for its stiffness, viscosity and surface tension",

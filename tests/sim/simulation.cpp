@@ -289,6 +289,18 @@ TEST(Simulation, RefusesWhatItCannotDoAndSaysWhy) {
        [](auto& o) {
          o.pours = {{0, 1, {1, 1, 1}, {0, -1, 0}, 0.01f}};
        }},
+      {"blocks of water hold no particle (expected water that fills a cube of one spacing at least, found blocks "
+       "thinner",
+       [](auto& o) {
+         o.blocks = {{o.tank.low, o.tank.low + 0.5f * o.fluid.spacing}};
+       }},
+      {"blocks that are taken by obstacles",
+       [](auto& o) {
+         ObstacleOptions all;
+         all.shape.size = 3.0f * o.tank.extent();
+         all.pose.position = o.tank.centre();
+         o.obstacles = {all};
+       }},
       {"speed of a jet",
        [](auto& o) {
          o.pours = {{0, 1, {0.1f, 0.1f, 0.1f}, {0, 0, 0}, 0.01f}};

@@ -177,6 +177,7 @@ TEST_P(Solvers, SayWhichOptionIsOutOfRange) {
   refused([](FluidOptions& o) { o.smoothing_length = 10 * kSpacing; });
   refused([](FluidOptions& o) { o.step = -1; });
   refused([](FluidOptions& o) { o.step = 100; });
+  refused([](FluidOptions& o) { o.step = 1e-9f; });
   refused([](FluidOptions& o) { o.rest_density = 0; });
   refused([](FluidOptions& o) { o.iterations = 0; });
   refused([](FluidOptions& o) { o.gravity.x = INFINITY; });
@@ -186,6 +187,34 @@ TEST_P(Solvers, SayWhichOptionIsOutOfRange) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("spacing"), std::string::npos) << error.what();
   }
+}
+
+std::string refusal(const FluidOptions& options) {
+  try {
+    with_defaults(options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+TEST(Sph, RefusesWhatOnlyStepsBelowAMicrosecondWouldKeepStable) {
+  for (float FluidOptions::*option :
+       {&FluidOptions::stiffness, &FluidOptions::viscosity, &FluidOptions::surface_tension}) {
+    FluidOptions options = fluid_of(Solver::sph, kSpacing);
+    options.*option = 1e10f;
+    EXPECT_NE(refusal(options).find("steps are too short (expected at least 1e-06 s"), std::string::npos)
+        << refusal(options);
+    EXPECT_NE(refusal(options).find("less stiffness"), std::string::npos) << refusal(options);
+    options.step = 2e-6f;  // parts of it are as short
+    EXPECT_NE(refusal(options).find("steps are too short"), std::string::npos) << refusal(options);
+  }
+  EXPECT_NO_THROW(with_defaults(fluid_of(Solver::sph, 1e-5f))) << "the least spacing";
+}
+
+TEST_P(Solvers, TellSmoothingLengthsInSpacings) {
+  options_.smoothing_length = 10 * kSpacing;
+  EXPECT_NE(refusal(options_).find("expected 1.5 .. 4 spacings, found 10"), std::string::npos) << refusal(options_);
 }
 
 TEST_P(Solvers, TakeLongStepsInParts) {
