@@ -173,6 +173,17 @@ struct SolidHit {
   bool found() const { return distance < std::numeric_limits<float>::infinity(); }
 };
 
+/// What many rays meet first, field by field; lists as long as that of the rays.
+struct FaceHits {
+  static constexpr std::int32_t kNothing = -1, kOther = 6;
+  std::span<float> distance;     ///< m; infinity: nothing
+  std::span<std::int32_t> face;  ///< of a dull plane: twice the axis of its normal, and one more where that points
+                                 ///< along the axis; else kOther or kNothing
+  std::span<vec3> albedo;        ///< of planes, as in SolidHit
+  std::span<float> presence;     ///< of planes
+  std::span<SolidHit> others;    ///< written where `face` is kOther
+};
+
 /// What of the solids is seen through a view. All images have the view's size, or N x 1 for N picture points.
 struct SceneBuffers {
   Image<vec3> radiance;  ///< linear; the environment, without the sun's disc, where there is nothing
@@ -217,6 +228,8 @@ class Scene {
   /// @param distance  as in distance(); may be empty
   /// @throws Error    invalid_argument: lists of different lengths
   void hits(std::span<const Ray> rays, Beam beam, std::span<SolidHit> hits) const;
+  /// hits() with less to copy where planes are met.
+  void face_hits(std::span<const Ray> rays, Beam beam, const FaceHits& hits) const;
   void radiance(std::span<const Ray> rays, Beam beam, std::span<vec3> radiance, std::span<float> distance = {}) const;
   void distances(std::span<const Ray> rays, std::span<float> distance) const;
   /// Whether a solid stands between two points; their own surfaces do not count.

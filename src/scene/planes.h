@@ -29,8 +29,9 @@ struct SolidsBox {
 
 /// What of planes each ray meets first: distance, face, albedo, presence; and whether it meets a solid's box before.
 /// The same as TankBody::hit() and Scene::Parts::ground_hit() to rounding.
-/// @param tie  fraction of the distance within which the tank comes before the ground
-void plane_hits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie,
+/// @param tie      fraction of the distance within which the tank comes before the ground
+/// @param colours  false: albedos are not asked for, and without a meaning
+void plane_hits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie, bool colours,
                 BlockHits& hits);
 
 /// The sun as light on planes.

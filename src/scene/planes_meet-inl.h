@@ -23,15 +23,15 @@ class Meeting {
   HWY_INLINE Meeting(const Planes& planes, const RayBlock& rays, int first)
       : planes_(planes), rays_(rays), first_(static_cast<std::size_t>(first)) {}
 
-  HWY_INLINE void run(const SolidsBox& solids, Beam beam, float tie, BlockHits& hits) const {
+  HWY_INLINE void run(const SolidsBox& solids, Beam beam, float tie, bool colours, BlockHits& hits) const {
     const Tag d;
     Vec best = all(std::numeric_limits<float>::infinity()), face = all(static_cast<float>(kNothing));
     Vec red = hn::Zero(d), green = red, blue = red, presence = all(1.0f);
     if (planes_.tank && planes_.tank->tank().style == TankStyle::tiled)
-      tiled(beam, best, face, red, green, blue);
+      tiled(beam, colours, best, face, red, green, blue);
     else if (planes_.tank)
       bars(best, face, red, green, blue);
-    if (planes_.ground.visible) ground(beam, tie, best, face, presence, red, green, blue);
+    if (planes_.ground.visible) ground(beam, tie, colours, best, face, presence, red, green, blue);
     hn::Store(best, d, hits.distance + first_);
     hn::Store(red, d, hits.albedo[0] + first_);
     hn::Store(green, d, hits.albedo[1] + first_);
@@ -69,7 +69,7 @@ class Meeting {
   }
 
   /// See TankBody::tiled_hit().
-  HWY_INLINE void tiled(Beam beam, Vec& best, Vec& face, Vec& red, Vec& green, Vec& blue) const {
+  HWY_INLINE void tiled(Beam beam, bool colours, Vec& best, Vec& face, Vec& red, Vec& green, Vec& blue) const {
     const Tag d;
     const Vec zero = hn::Zero(d);
     const TankBody& tank = *planes_.tank;
@@ -109,6 +109,7 @@ class Meeting {
       best = hn::IfThenElse(rim, distance, best);
       face = hn::IfThenElse(rim, all(static_cast<float>(2 * up + 1)), face);
     }
+    if (!colours) return;
     Vec joints = hn::IfThenElseZero(rim, all(1.0f));
     const Mask tiles = hn::AndNot(rim, walls);
     if (!hn::AllFalse(d, tiles)) joints = hn::IfThenElse(tiles, joints_at(tank, at_wall, face, beam), joints);
@@ -195,7 +196,7 @@ class Meeting {
   }
 
   /// See Scene::Parts::ground_hit().
-  HWY_INLINE void ground(Beam beam, float tie, Vec& best, Vec& face, Vec& presence, Vec& red, Vec& green,
+  HWY_INLINE void ground(Beam beam, float tie, bool colours, Vec& best, Vec& face, Vec& presence, Vec& red, Vec& green,
                          Vec& blue) const {
     const Tag d;
     const Ground& g = planes_.ground;
@@ -228,6 +229,7 @@ class Meeting {
     best = hn::IfThenElse(met, distance, best);
     face = hn::IfThenElse(met, all(static_cast<float>(kGroundFace)), face);
     presence = hn::IfThenElse(met, left, presence);
+    if (!colours) return;
     Vec first = one;
     if (g.square > 0) {
       const Vec width = hn::Add(all(beam.width), hn::Mul(all(beam.spread), distance));

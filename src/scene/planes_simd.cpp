@@ -13,10 +13,11 @@ HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
 
-void PlaneHits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie,
+void PlaneHits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie, bool colours,
                BlockHits& hits) {
   const auto lanes = static_cast<int>(hn::Lanes(Tag()));
-  for (int first = 0; first < rays.count; first += lanes) Meeting(planes, rays, first).run(solids, beam, tie, hits);
+  for (int first = 0; first < rays.count; first += lanes)
+    Meeting(planes, rays, first).run(solids, beam, tie, colours, hits);
 }
 
 void SunPastPlanes(const Planes& planes, const SolidsBox& solids, const SunPath& sun, int count, BlockPoints& points) {
@@ -34,9 +35,9 @@ namespace meniscus {
 HWY_EXPORT(PlaneHits);
 HWY_EXPORT(SunPastPlanes);
 
-void plane_hits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie,
+void plane_hits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie, bool colours,
                 BlockHits& hits) {
-  HWY_DYNAMIC_DISPATCH(PlaneHits)(planes, solids, rays, beam, tie, hits);
+  HWY_DYNAMIC_DISPATCH(PlaneHits)(planes, solids, rays, beam, tie, colours, hits);
 }
 
 void sun_past_planes(const Planes& planes, const SolidsBox& solids, const SunPath& sun, int count,

@@ -1,6 +1,7 @@
 // Rays in blocks: what they meet, and what light comes along them.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <glm/common.hpp>
 #include <numbers>
 
@@ -47,7 +48,7 @@ void check(bool same_length) {
 void Scene::Parts::meet(const RayBlock& rays, Beam beam, bool distances_only, BlockHits& hits) const {
   const Planes planes{body.get(), ground, u_axis, v_axis};
   static const SolidsBox none;
-  plane_hits(planes, solids ? solids->box() : none, rays, beam, distances_only ? 0.0f : kTie, hits);
+  plane_hits(planes, solids ? solids->box() : none, rays, beam, distances_only ? 0.0f : kTie, !distances_only, hits);
   if (solids) solids->hits(rays, beam, !distances_only, hits);
 }
 
@@ -193,6 +194,29 @@ void Scene::hits(std::span<const Ray> rays, Beam beam, std::span<SolidHit> hits)
     parts_->meet(block, beam, false, met);
     for (int lane = 0; lane < block.count; ++lane)
       hits[first + static_cast<std::size_t>(lane)] = parts_->hit_of(met, lane);
+  });
+}
+
+void Scene::face_hits(std::span<const Ray> rays, Beam beam, const FaceHits& hits) const {
+  check(rays.size() == hits.distance.size() && rays.size() == hits.face.size() && rays.size() == hits.albedo.size() &&
+        rays.size() == hits.presence.size() && rays.size() == hits.others.size());
+  // By Face: what it is called outside.
+  std::int32_t names[8] = {0, 1, 2, 3, 4, 5, FaceHits::kOther, FaceHits::kOther};
+  if (parts_->body && parts_->body->tank().style == TankStyle::glass) std::fill_n(names, 6, FaceHits::kOther);
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(parts_->ground.up[axis]) > 0.99999f)
+      names[kGroundFace] = 2 * axis + (parts_->ground.up[axis] > 0 ? 1 : 0);
+  for_each_block(rays, [&](const RayBlock& block, BlockHits& met, std::size_t first) {
+    parts_->meet(block, beam, false, met);
+    std::copy_n(met.distance, block.count, hits.distance.data() + first);
+    std::copy_n(met.presence, block.count, hits.presence.data() + first);
+    for (int lane = 0; lane < block.count; ++lane) {
+      const std::size_t i = first + static_cast<std::size_t>(lane);
+      const std::int32_t face = met.face[lane];
+      hits.face[i] = face == meniscus::kNothing ? FaceHits::kNothing : names[face];
+      hits.albedo[i] = {met.albedo[0][lane], met.albedo[1][lane], met.albedo[2][lane]};
+      if (hits.face[i] == FaceHits::kOther) hits.others[i] = parts_->hit_of(met, lane);
+    }
   });
 }
 

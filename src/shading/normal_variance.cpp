@@ -48,6 +48,16 @@ float NormalVariance::at(std::size_t i) const {
   const int y = points_.empty() ? static_cast<int>(i / static_cast<std::size_t>(width_)) : pixel_of(points_[i].y);
   if (x < 0 || y < 0) return 0.0f;
   float largest = 0;
+  if (points_.empty() && x > 0 && y > 0 && x + 1 < width_ && y + 1 < height_) {
+    const auto row = static_cast<std::size_t>(width_);
+    const vec3 normal = normals_[i];
+    for (const std::size_t other : {i - 1, i + 1, i - row, i + row}) {
+      const vec3 neighbour = normals_[other], change = normal - neighbour;
+      const float squared = glm::dot(change, change);
+      if (squared > largest && neighbour != vec3{0.0f}) largest = squared;
+    }
+    return std::min(largest, kLargest);
+  }
   if (!points_.empty()) include(i, x, y, largest);
   include(i, x - 1, y, largest);
   include(i, x + 1, y, largest);

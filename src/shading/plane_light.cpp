@@ -59,18 +59,18 @@ void PlaneLight::add(int axis, float sign, float level, const Bounds& region, fl
   const int down = (plane->height + kCells - 1) / kCells;
   plane->squares =
       std::vector<std::atomic<const Square*>>(static_cast<std::size_t>(plane->across) * static_cast<std::size_t>(down));
-  by_face_[static_cast<std::size_t>(2 * axis + (sign > 0 ? 0 : 1))].push_back(plane.get());
+  by_face_[static_cast<std::size_t>(2 * axis + (sign > 0 ? 1 : 0))].push_back(plane.get());
   planes_.push_back(std::move(plane));
 }
 
-std::optional<vec3> PlaneLight::at(vec3 point, vec3 normal) const {
-  const int axis = std::abs(normal.x) > 0.999f ? 0 : std::abs(normal.y) > 0.999f ? 1 : 2;
-  if (!(std::abs(normal[axis]) > 0.999f)) return std::nullopt;
-  for (const Plane* held : by_face_[static_cast<std::size_t>(2 * axis + (normal[axis] > 0 ? 0 : 1))]) {
+bool PlaneLight::at(std::int32_t face, vec3 point, vec3& irradiance) const {
+  const int axis = face >> 1;
+  const vec3 turned = axis == 0 ? point : axis == 1 ? vec3{point.y, point.z, point.x} : vec3{point.z, point.x, point.y};
+  for (const Plane* held : by_face_[static_cast<std::size_t>(face)]) {
     const Plane& plane = *held;
-    if (!(std::abs(point[axis] - plane.level) <= tolerance_)) continue;
-    const float u = (point[(axis + 1) % 3] - plane.low.x) * plane.inverse.x;
-    const float v = (point[(axis + 2) % 3] - plane.low.y) * plane.inverse.y;
+    if (!(std::abs(turned.x - plane.level) <= tolerance_)) continue;
+    const float u = (turned.y - plane.low.x) * plane.inverse.x;
+    const float v = (turned.z - plane.low.y) * plane.inverse.y;
     // A little beyond the edge, as planes overlap.
     if (!(u >= -0.1f && v >= -0.1f && u <= static_cast<float>(plane.width) + 0.1f &&
           v <= static_cast<float>(plane.height) + 0.1f))
@@ -81,10 +81,11 @@ std::optional<vec3> PlaneLight::at(vec3 point, vec3 normal) const {
     const float fy = std::clamp(v - static_cast<float>(y), 0.0f, 1.0f);
     const int column = x / kCells, row = y / kCells;
     const vec3* corner = square(plane, column, row).data() + (y - row * kCells) * kTile + (x - column * kCells);
-    return (1 - fy) * ((1 - fx) * corner[0] + fx * corner[1]) +
-           fy * ((1 - fx) * corner[kTile] + fx * corner[kTile + 1]);
+    irradiance =
+        (1 - fy) * ((1 - fx) * corner[0] + fx * corner[1]) + fy * ((1 - fx) * corner[kTile] + fx * corner[kTile + 1]);
+    return true;
   }
-  return std::nullopt;
+  return false;
 }
 
 const PlaneLight::Square& PlaneLight::square(const Plane& plane, int x, int y) const {

@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "meniscus/scene.h"
@@ -25,9 +24,9 @@ class PlaneLight {
   PlaneLight(const PlaneLight&) = delete;
   PlaneLight& operator=(const PlaneLight&) = delete;
 
-  /// Irradiance at a point on one of the planes; nothing where it is on none of them.
-  /// @param normal  unit, of the lit side
-  std::optional<vec3> at(vec3 point, vec3 normal) const;
+  /// Irradiance at a point on one of the planes; false where it is on none of them.
+  /// @param face  0 .. 5, as in FaceHits: the plane's normal
+  bool at(std::int32_t face, vec3 point, vec3& irradiance) const;
 
  private:
   using Square = std::array<vec3, static_cast<std::size_t>(kTile) * kTile>;
@@ -46,7 +45,7 @@ class PlaneLight {
 
   Scene white_;  ///< with a white tank
   std::vector<std::unique_ptr<Plane>> planes_;
-  std::array<std::vector<const Plane*>, 6> by_face_;  ///< by twice the axis, and one more for normals against it
+  std::array<std::vector<const Plane*>, 6> by_face_;  ///< by twice the axis, and one more for normals along it
   float tolerance_ = 0;                               ///< m
 };
 

@@ -54,6 +54,34 @@ ApproximatingPlane plane_of(const WaterObject& object, vec3 eye, bool eye_above)
   return plane;
 }
 
+/// What is held for the hits of some rays.
+struct StillHits {
+  std::vector<float> distance, presence;
+  std::vector<std::int32_t> face;
+  std::vector<vec3> albedo;
+  std::vector<SolidHit> others;
+
+  FaceHits of_size(std::size_t size) {
+    distance.resize(size);
+    presence.resize(size);
+    face.resize(size);
+    albedo.resize(size);
+    others.resize(size);
+    return {distance, face, albedo, presence, others};
+  }
+};
+
+/// A hit on a plane as one of a solid.
+SolidHit plane_hit(const FaceHits& hits, std::size_t i) {
+  SolidHit hit;
+  hit.distance = hits.distance[i];
+  hit.normal[hits.face[i] / 2] = hits.face[i] % 2 == 1 ? 1.0f : -1.0f;
+  hit.face_normal = hit.normal;
+  hit.albedo = hits.albedo[i];
+  hit.presence = hits.presence[i];
+  return hit;
+}
+
 }  // namespace
 
 EyeSide::EyeSide(const Inputs& inputs, bool reflected)
@@ -225,19 +253,26 @@ void EyeSide::look_still(std::span<const Ray> rays, Beam beam, std::span<EyeLook
     for (std::size_t i = 0; i < rays.size(); ++i) look_still_by_direction(rays[i].direction, looks[i]);
     return;
   }
-  thread_local std::vector<SolidHit> hits;
-  hits.resize(rays.size());
-  still_scene_.hits(rays, beam, hits);
+  thread_local StillHits held;
+  const FaceHits hits = held.of_size(rays.size());
+  still_scene_.face_hits(rays, beam, hits);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const SolidHit& hit = hits[i];
-    if (!hit.found()) continue;
+    const std::int32_t face = hits.face[i];
+    if (face == FaceHits::kNothing) continue;
     EyeLook& look = looks[i];
-    look.still_alpha = hit.presence;
-    look.still_distance = hit.distance;
     const Ray& ray = rays[i];
-    std::optional<vec3> light;
-    if (!(hit.roughness < 1.0f)) light = light_->at(ray.origin + hit.distance * ray.direction, hit.face_normal);
-    look.still = hit.presence * (light ? kPerPi * hit.albedo * *light : scene_.lit(hit, ray, beam));
+    look.still_distance = hits.distance[i];
+    if (face != FaceHits::kOther) {
+      look.still_alpha = hits.presence[i];
+      vec3 light;
+      if (light_->at(face, ray.origin + hits.distance[i] * ray.direction, light)) {
+        look.still = hits.presence[i] * kPerPi * hits.albedo[i] * light;
+        continue;
+      }
+    }
+    const SolidHit hit = face == FaceHits::kOther ? hits.others[i] : plane_hit(hits, i);
+    look.still_alpha = hit.presence;
+    look.still = hit.presence * scene_.lit(hit, ray, beam);
   }
 }
 

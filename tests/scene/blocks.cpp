@@ -82,11 +82,41 @@ struct Differences {
   bool few() const { return different * 2000 <= all; }
 };
 
+/// Field by field the same as hits().
+void expect_faces_as_hits(const Scene& scene, const std::vector<Ray>& rays, Beam beam,
+                          const std::vector<SolidHit>& hits) {
+  std::vector<float> distance(rays.size()), presence(rays.size());
+  std::vector<std::int32_t> face(rays.size());
+  std::vector<vec3> albedo(rays.size());
+  std::vector<SolidHit> others(rays.size());
+  scene.face_hits(rays, beam, {distance, face, albedo, presence, others});
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    SolidHit one;
+    one.distance = distance[i];
+    if (face[i] == FaceHits::kOther) {
+      one = others[i];
+    } else if (face[i] != FaceHits::kNothing) {
+      one.face_normal[face[i] / 2] = face[i] % 2 == 1 ? 1.0f : -1.0f;
+      one.normal = one.face_normal;
+      one.albedo = albedo[i];
+      one.presence = presence[i];
+    }
+    const SolidHit& other = hits[i];
+    if (!(one.distance == other.distance && distance[i] == other.distance && one.normal == other.normal &&
+          one.face_normal == other.face_normal && one.albedo == other.albedo && one.presence == other.presence &&
+          one.roughness == other.roughness && one.ior == other.ior))
+      ++different;
+  }
+  EXPECT_EQ(different, 0u);
+}
+
 void expect_as_one_by_one(const Scene& scene, const std::vector<Ray>& rays, Beam beam, const std::string& what) {
   std::vector<SolidHit> hits(rays.size());
   std::vector<vec3> radiance(rays.size());
   std::vector<float> seen(rays.size()), distances(rays.size());
   scene.hits(rays, beam, hits);
+  expect_faces_as_hits(scene, rays, beam, hits);
   scene.radiance(rays, beam, radiance, seen);
   scene.distances(rays, distances);
   Differences of_hits, of_radiance, of_distances;
@@ -195,6 +225,7 @@ TEST(RayBlocks, MayBeNone) {
   everything().radiance(std::span<const Ray>{}, Beam{}, {});
   everything().distances({}, {});
   everything().hits({}, {}, {});
+  everything().face_hits({}, {}, {});
 }
 
 TEST(RayBlocks, RefuseListsOfDifferentLengths) {
@@ -205,6 +236,7 @@ TEST(RayBlocks, RefuseListsOfDifferentLengths) {
   EXPECT_THROW(everything().radiance(rays, {}, radiance), Error);
   EXPECT_THROW(everything().distances(rays, distances), Error);
   EXPECT_THROW(everything().hits(rays, {}, hits), Error);
+  EXPECT_THROW(everything().face_hits(rays, {}, {}), Error);
 }
 
 SceneBuffers seen_at(const Scene& scene, int size) {
