@@ -3,6 +3,7 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "meniscus/formulas/optics.h"
 #include "meniscus/shading.h"
@@ -77,24 +78,46 @@ Image<vec3> gathered(const Image<vec3>& arriving, const Image<float>& smooth, fl
   return result;
 }
 
-/// Where the water begins along the view, a little before it, for every texel within `reach` of it; 0 farther off.
-Image<float> beginning(const Surface& surface, const View& view, int reach, float margin) {
-  Image<float> depth = surface.see(view).depth;
-  // The least of a row's neighbours, then of a column's.
+/// The greatest of the values within `reach` of each.
+Image<float> greatest(Image<float> image, int reach) {
+  // Of a row's neighbours, then of a column's.
   for (const bool rows : {true, false}) {
-    const Image<float> before = depth;
-    parallel_for(static_cast<std::size_t>(view.height), 16, [&](std::size_t begin, std::size_t end) {
+    const Image<float> before = image;
+    parallel_for(static_cast<std::size_t>(image.height()), 16, [&](std::size_t begin, std::size_t end) {
       for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-        for (int x = 0; x < view.width; ++x)
+        for (int x = 0; x < image.width(); ++x)
           for (int k = -reach; k <= reach; ++k) {
-            const int u = std::clamp(rows ? x + k : x, 0, view.width - 1);
-            const int v = std::clamp(rows ? y : y + k, 0, view.height - 1);
-            depth(x, y) = std::min(depth(x, y), before(u, v));
+            const int u = std::clamp(rows ? x + k : x, 0, image.width() - 1);
+            const int v = std::clamp(rows ? y : y + k, 0, image.height() - 1);
+            image(x, y) = std::max(image(x, y), before(u, v));
           }
     });
   }
-  for (float& value : depth) value = value < 1e30f ? value - margin : 0.0f;
-  return depth;
+  return image;
+}
+
+/// Where the water begins along the view, `margin` before it; beside it, at the height of the highest water within
+/// `reach`, and 0 farther off. Heights are compared, not depths: level water that the view sees aslant has one height.
+Image<float> beginning(const Surface& surface, const View& view, vec3 up, int reach, float margin) {
+  const Image<float> depth = surface.see(view).depth;
+  const float falls = glm::dot(view.forward, up);
+  const auto origin = [&](int x, int y) {
+    return glm::dot(view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}).origin, up);
+  };
+  constexpr float kNone = -std::numeric_limits<float>::infinity();
+  Image<float> height(view.width, view.height, kNone);
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x)
+      if (depth(x, y) < 1e30f) height(x, y) = origin(x, y) + depth(x, y) * falls;
+  // A point between texels asks the one to its upper left: its neighbours count too.
+  const Image<float> here = greatest(height, 1), beside = greatest(std::move(height), reach);
+  Image<float> first(view.width, view.height);
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) {
+      const float level = here(x, y) > kNone ? here(x, y) : beside(x, y);
+      if (level > kNone) first(x, y) = (level - origin(x, y)) / falls - margin;
+    }
+  return first;
 }
 
 /// No water: all light everywhere.
@@ -168,7 +191,8 @@ std::shared_ptr<const WaterLight> shadow(const Surface& surface, const Environme
       map(x, y) = {glm::mix(vec3{1.0f}, sun_part, presence), glm::mix(vec3{1.0f}, sky_part, presence)};
     }
   Image<float> first;
-  if (on_bodies) first = beginning(surface, view, std::max(2, static_cast<int>(3.0f * kSkyBlur * texels)), texel);
+  if (on_bodies)
+    first = beginning(surface, view, ground.up, std::max(2, static_cast<int>(3.0f * kSkyBlur * texels)), texel);
   return std::make_shared<LightMap>(view, std::move(map), std::move(first));
 }
 

@@ -3,7 +3,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "analytic_water.h"
 #include "fixtures.h"
+#include "shading/light_map.h"
 
 namespace meniscus {
 namespace {
@@ -165,6 +167,27 @@ TEST(SoftShadow, LeavesBodiesThatStandOutOfTheWaterInFullLight) {
         soft_shadow(Body({2, 0.5f, 2}, false), under_sun({0, 1, 0}), Ground{}, clay, nullptr, {}, on_bodies);
     EXPECT_LT(light->at({0, -1.0f, 0}, {0, 1, 0}).sun.y, 0.1f) << "under it";
     EXPECT_EQ(light->at({0, 1.2f, 0}, {0, 1, 0}).sun.y > 0.99f, on_bodies) << "above it";
+  }
+}
+
+TEST(SoftShadow, BeginsAtTheWaterHoweverLowTheSun) {
+  // Along a post in the middle of flat water, on its sunny side: full light above the water, less below it.
+  const tests::AnalyticWater water = tests::flat_water({2, 2}, 0.5f);
+  for (const float elevation : {0.35f, 0.8f, 1.2f}) {
+    const vec3 sun{std::cos(elevation), std::sin(elevation), 0};
+    const auto soft = soft_shadow(water, under_sun(sun), Ground{}, material_preset("clay", 1.0f), nullptr, {}, true);
+    const auto sky = sky_shadow(water, under_sun(sun), Ground{}, material_preset("clay", 1.0f), {}, true);
+    for (const float height : {0.55f, 0.65f, 0.9f, 1.5f}) {
+      EXPECT_EQ(soft->at({0.1f, height, 0}, {1, 0, 0}).sun, vec3{1.0f}) << elevation << " " << height;
+      EXPECT_EQ(soft->at({0.1f, height, 0}, {1, 0, 0}).sky, vec3{1.0f}) << elevation << " " << height;
+      if (height > 0.6f) {
+        EXPECT_EQ(sky->at({0.1f, height, 0}, {1, 0, 0}).sky, vec3{1.0f}) << elevation << " " << height;
+      }
+    }
+    for (const float height : {0.1f, 0.45f}) {
+      EXPECT_LT(soft->at({0.1f, height, 0}, {1, 0, 0}).sun.y, 0.5f) << elevation << " " << height;
+      EXPECT_LT(soft->at({0.1f, height, 0}, {1, 0, 0}).sky.y, 0.99f) << elevation << " " << height;
+    }
   }
 }
 
