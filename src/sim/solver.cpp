@@ -35,12 +35,13 @@ void check(const FluidOptions& options) {
 
 /// Water of which a second would take for ever.
 /// @param options  without gaps
-void check_pace(const FluidOptions& options, float longest) {
+/// @param given    the step that was asked for, s; 0: none
+void check_pace(const FluidOptions& options, float given, float longest) {
   constexpr float kShortest = 1e-6f;  ///< s
   const float shortest = std::min(options.step, longest);
   if (shortest >= kShortest) return;
   std::string advice = "set a longer step, or none";
-  if (!(longest >= kShortest))
+  if (!(given > 0 && given < kShortest))
     advice = options.solver == Solver::sph ? "take less stiffness, viscosity or surface tension, or a larger spacing"
                                            : "take less gravity or a larger spacing";
   throw Error(ErrorCode::invalid_argument, {"the fluid's steps are too short",
@@ -63,6 +64,7 @@ Solver solver_of(std::string_view name) {
 
 FluidOptions with_defaults(FluidOptions options) {
   check(options);
+  const float given = options.step;
   if (options.smoothing_length == 0.0f) options.smoothing_length = 2.0f * options.spacing;
   if (options.solver == Solver::sph)
     fill_sph_defaults(options);
@@ -70,7 +72,7 @@ FluidOptions with_defaults(FluidOptions options) {
     fill_pbf_defaults(options);
   constexpr float kMostParts = 100.0f;
   const float longest = longest_stable_step(options);
-  check_pace(options, longest);
+  check_pace(options, given, longest);
   if (!(options.step <= kMostParts * longest))
     throw Error(ErrorCode::invalid_argument,
                 {"the fluid's step is too long for its stiffness, viscosity and surface tension",

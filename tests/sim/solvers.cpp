@@ -209,6 +209,9 @@ TEST(Sph, RefusesWhatOnlyStepsBelowAMicrosecondWouldKeepStable) {
     options.step = 2e-6f;  // parts of it are as short
     EXPECT_NE(refusal(options).find("steps are too short"), std::string::npos) << refusal(options);
   }
+  FluidOptions hasty = fluid_of(Solver::sph, kSpacing);
+  hasty.step = 1e-9f;
+  EXPECT_NE(refusal(hasty).find("set a longer step"), std::string::npos) << refusal(hasty);
   EXPECT_NO_THROW(with_defaults(fluid_of(Solver::sph, 1e-5f))) << "the least spacing";
 }
 
