@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -93,8 +94,11 @@ void simulate(const SimulateArguments& arguments) {
   for (const auto& [stage, ms] : report.times.rows()) std::cout << fmt::format("{:<14}{:>12.1f} ms\n", stage, ms);
   for (const std::string& way : report.ways)
     if (!way.empty()) std::cout << fmt::format("the way of a body: {}\n", way);
-  std::cout << fmt::format("{} frames written. Draw them with: meniscus render {} -o film.mp4\n", report.frames.size(),
-                           drawing);
+  const auto kept = std::count_if(report.frames.begin(), report.frames.end(),
+                                  [](const SimulatedFrame& frame) { return frame.skipped; });
+  const std::string also = kept > 0 ? fmt::format(", {} kept", kept) : "";
+  std::cout << fmt::format("{} frames written{}. Draw them with: meniscus render {} -o film.mp4\n",
+                           report.frames.size() - static_cast<std::size_t>(kept), also, drawing);
 }
 
 void add_options(CLI::App& command, SimulateArguments& arguments) {
@@ -121,7 +125,8 @@ void add_options(CLI::App& command, SimulateArguments& arguments) {
       ->type_name("SECONDS")
       ->check(CLI::Range(1e-9, 1.0).description(""));
   command.add_flag("--resume", arguments.resume,
-                   "Leave frames that are there already as they are; the simulation runs through them all the same");
+                   "Leave frames that are there already as they are, if they are whole; the simulation runs through "
+                   "them all the same");
   command
       .add_option("--report", arguments.report_path, "Write times, steps and energy of every frame into a JSON file")
       ->type_name("FILE.json");

@@ -501,7 +501,8 @@ struct SimulationReport {
 /// appears: a JSON file as `frames` of a scene file's mesh takes it.
 /// @param output  a name with {} for the frame's number, .ply; without one for a single frame
 /// @param frames  at most so many
-/// @param resume  frames that are there already are left as they are; the simulation runs through them all the same
+/// @param resume  frames that are there already are left as they are, if they are as long as they must be; the
+///                simulation runs through them all the same
 /// @throws Error  invalid_argument: several frames for one file, another kind of file; io_failed; as SimulatedScene
 SimulationReport write_simulation(
     SimulatedScene& scene, std::span<const BodyOptions> bodies, const std::string& output, std::size_t frames,

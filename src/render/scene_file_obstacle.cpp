@@ -86,7 +86,7 @@ const Section& obstacle_section() {
         "It stands still, moves along a path, or is moved by water and gravity",
         [](const JsonValue& v, Draft& d) { role(d).dynamic = v.text() == "dynamic"; }},
        {"density",
-        {a_number({0, 1e6, true})},
+        {a_number(between(1, 1e5))},
         "500",
         "dynamic: kg/m^3; what is lighter than the water floats",
         [](const JsonValue& v, Draft& d) { role(d).density = v.real(); }},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 
 #include "meniscus/render.h"
 
@@ -12,15 +13,19 @@ namespace {
 
 using Transforms = std::vector<std::optional<glm::mat4>>;
 
-void check(const OutputTarget& target, std::size_t frames) {
-  if (target.format() != PictureFormat::ply)
+OutputTarget target_of(const std::string& output, std::size_t frames) {
+  std::string ending = std::filesystem::path(output).extension().string();
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
+  if (ending != ".ply")
     throw Error(ErrorCode::invalid_argument, {"simulated frames are written as PLY files",
                                               "a name that ends with .ply",
-                                              {},
-                                              target.path(),
+                                              ending.empty() ? "no extension" : ending,
+                                              output,
                                               {},
                                               {},
                                               "pictures and films of a simulation are drawn by meniscus render"});
+  OutputTarget target(output);
   if (frames > 1 && !target.is_pattern())
     throw Error(ErrorCode::invalid_argument, {fmt::format("{} frames do not fit into one file", frames),
                                               "a pattern",
@@ -30,6 +35,25 @@ void check(const OutputTarget& target, std::size_t frames) {
                                               {},
                                               "write to a name with {} for the frame number"});
   target.prepare();
+  return target;
+}
+
+/// Whether a file is as long as one that holds these particles; what was cut off is not.
+bool is_whole(const std::string& path, const Particles& particles) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error) return false;
+  std::ifstream file(path, std::ios::binary);
+  std::string head(4096, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  const std::string last = "end_header\n";
+  const std::size_t end = head.find(last);
+  if (end == std::string::npos) return false;
+  const std::size_t counted = head.find(fmt::format("\nelement vertex {}\n", particles.size()));
+  std::size_t floats = 3;
+  for (const Attribute& attribute : particles.attributes) floats += static_cast<std::size_t>(attribute.components);
+  return counted < end && bytes == end + last.size() + 4 * floats * particles.size();
 }
 
 bool moves(const std::vector<Transforms>& frames, std::size_t body) {
@@ -71,8 +95,7 @@ SimulationReport write_simulation(SimulatedScene& scene, std::span<const BodyOpt
                                   std::size_t frames, bool resume,
                                   FunctionRef<void(const SimulatedFrame&, std::size_t, std::size_t)>* on_frame) {
   frames = std::min(frames, scene.frames());
-  const OutputTarget target(output);
-  check(target, frames);
+  const OutputTarget target = target_of(output, frames);
   SimulationReport report;
   std::vector<Transforms> transforms;
   std::size_t steps = 0;
@@ -88,7 +111,7 @@ SimulationReport write_simulation(SimulatedScene& scene, std::span<const BodyOpt
     steps = scene.simulation().steps();
     frame.mean_neighbours = scene.simulation().mean_neighbours();
     frame.kinetic_energy = scene.simulation().kinetic_energy();
-    frame.skipped = resume && std::filesystem::exists(frame.output);
+    frame.skipped = resume && is_whole(frame.output, particles);
     if (!frame.skipped) {
       const StageTimer timer(&frame.times, "write");
       write_particles_ply(frame.output, particles);

@@ -8,6 +8,7 @@
 #include "meniscus/render.h"
 #include "render/body_placement.h"
 #include "render/simulated_bodies.h"
+#include "sim/fluid.h"
 
 namespace meniscus {
 namespace {
@@ -21,6 +22,43 @@ void check(const SimulatedWater& water) {
                 fmt::format("{} drags name {} bodies", water.simulation.drags.size(), water.dragged.size()));
 }
 
+/// The step that was asked for; else the default, but no more than a frame, s.
+float step_of(const SimulatedWater& water) {
+  const FluidOptions& fluid = water.simulation.fluid;
+  const double frame = 1 / water.frames_per_second;
+  const float step = with_defaults(fluid).step;
+  if (static_cast<double>(step) <= frame * 1.0001) return fluid.step;
+  if (fluid.step == 0) return static_cast<float>(frame);
+  throw Error(ErrorCode::invalid_argument,
+              {"a step of the simulation is longer than a frame",
+               fmt::format("at most {:.4g} s, a frame at {:g} a second", frame, water.frames_per_second),
+               fmt::format("a step of {:.4g} s", step),
+               {},
+               {},
+               {},
+               "set a smaller step, or none, or fewer frames a second"});
+}
+
+/// Frames that would not come to an end.
+void check_pace(const SimulatedWater& water, const FluidOptions& fluid) {
+  constexpr double kMostSteps = 10000;
+  const FluidOptions filled = with_defaults(fluid);
+  const double parts = std::ceil(static_cast<double>(filled.step / longest_stable_step(filled)) * 0.999);
+  double steps = std::round(1 / (water.frames_per_second * static_cast<double>(filled.step)));
+  if (water.most_steps > 0) steps = std::min(steps, static_cast<double>(water.most_steps));
+  steps *= std::max(parts, 1.0);
+  if (steps <= kMostSteps) return;
+  throw Error(ErrorCode::invalid_argument,
+              {"a frame of the simulation takes too many steps",
+               fmt::format("at most {:.0f}", kMostSteps),
+               fmt::format("{:.0f} steps a frame, at {:g} frames a second", steps, water.frames_per_second),
+               {},
+               {},
+               {},
+               "take a longer step, a larger spacing, less stiffness, viscosity or surface tension, or more frames a "
+               "second"});
+}
+
 /// How fast the water may become: falling through the tank, out of a jet, or with what moves it.
 float fastest_of(const SimulationOptions& options) {
   const vec3 extent = options.tank.extent();
@@ -32,6 +70,8 @@ float fastest_of(const SimulationOptions& options) {
 
 SimulationOptions simulation_of(const SimulatedWater& water, const SimulatedBodies& bodies) {
   SimulationOptions options = water.simulation;
+  options.fluid.step = step_of(water);
+  check_pace(water, options.fluid);
   options.obstacles = bodies.obstacles();
   for (std::size_t i = 0; i < options.drags.size(); ++i)
     options.drags[i].obstacle = bodies.obstacle_called(water.dragged[i]);

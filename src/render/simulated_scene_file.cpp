@@ -71,8 +71,8 @@ std::string scene_of_written_frames(const std::string& scene_path, const std::st
   const JsonText text(scene_path);
   ordered_json scene = ordered_json::parse(text.root().dump());
   scene.erase("$schema");
-  const fs::path to = fs::absolute(folder).lexically_normal();
-  move_paths(scene, Moved(fs::path(scene_path).parent_path(), to));
+  const fs::path to = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
+  move_paths(scene, Moved(fs::absolute(scene_path).parent_path(), to));
 
   // The water comes from files, and what was taken from the simulation is said.
   ordered_json& water = scene["water"];

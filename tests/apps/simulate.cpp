@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "meniscus/io.h"
 #include "meniscus/output.h"
 #include "program.h"
@@ -46,12 +48,28 @@ TEST(Simulate, LeavesFramesThatAreThere) {
   const Folder folder;
   folder.write("scene.json", kScene);
   ASSERT_EQ(run_program({"simulate", folder / "scene.json", "-o", folder / "{}.ply", "--frames", "2"}).exit_code, 0);
-  folder.write("1.ply", "kept");
+  std::string kept = folder.read("1.ply");
+  kept.back() = static_cast<char>(kept.back() ^ 1);  // another frame of the same length
+  folder.write("1.ply", kept);
+  folder.write("0.ply", kept.substr(0, kept.size() - 1));
   const Outcome run = run_program({"simulate", folder / "scene.json", "-o", folder / "{}.ply", "--resume"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.err.find("is there already"), std::string::npos) << run.err;
   EXPECT_EQ(read_particles(folder / "2.ply").size(), 288u);
-  EXPECT_THROW(read_particles(folder / "1.ply"), Error);
+  EXPECT_EQ(read_particles(folder / "0.ply").size(), 288u) << "what was cut off is written anew";
+  EXPECT_TRUE(folder.read("1.ply") == kept);
+  EXPECT_NE(run.out.find("2 frames written, 1 kept"), std::string::npos) << run.out;
+}
+
+TEST(Simulate, TakesNamesWithoutFolders) {
+  const Folder folder;
+  folder.write("scene.json", kScene);
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder / "");
+  const Outcome run = run_program({"simulate", "scene.json", "-o", "{}.ply", "--frames", "2"});
+  std::filesystem::current_path(before);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(folder.has("draw.json"));
 }
 
 TEST(Simulate, RefusesWhatCannotBeMeant) {

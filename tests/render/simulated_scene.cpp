@@ -96,6 +96,53 @@ TEST(SimulatedScene, SlowsTheWaterRatherThanThePicture) {
   EXPECT_EQ(scene.simulation().steps(), 5u);
 }
 
+std::string refusal(const SimulatedWater& water) {
+  try {
+    SimulatedScene scene(water, {});
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+TEST(SimulatedScene, RefusesStepsLongerThanAFrame) {
+  SimulatedWater water = small_tank();
+  water.simulation.fluid.step = 0.1f;
+  EXPECT_NE(refusal(water).find("longer than a frame (expected at most 0.04 s, a frame at 25 a second, found a step of "
+                                "0.1 s"),
+            std::string::npos)
+      << refusal(water);
+  water.simulation.fluid.step = 0.04f;
+  EXPECT_NO_THROW(SimulatedScene(water, {}));
+}
+
+TEST(SimulatedScene, MakesDefaultStepsNoLongerThanAFrame) {
+  SimulatedWater water = small_tank();
+  water.frames_per_second = 1000;
+  for (const Solver solver : {Solver::sph, Solver::pbf}) {
+    water.simulation.fluid.solver = solver;
+    SimulatedScene scene(water, {});
+    EXPECT_NEAR(*scene.frame(5).time, 0.005, 1e-6);
+    EXPECT_EQ(scene.simulation().steps(), 5u);
+  }
+}
+
+TEST(SimulatedScene, RefusesFramesOfTooManySteps) {
+  SimulatedWater water = small_tank();
+  water.simulation.fluid.step = 2e-6f;
+  EXPECT_NE(refusal(water).find("found 20000 steps a frame"), std::string::npos) << refusal(water);
+  water.most_steps = 10;
+  EXPECT_NO_THROW(SimulatedScene(water, {}));
+  water.most_steps = 0;
+  water.simulation.fluid.solver = Solver::sph;
+  water.simulation.fluid.step = 0;
+  water.simulation.fluid.stiffness = 2e8f;  // h = 0.1 m: 3.5 microseconds
+  EXPECT_NE(refusal(water).find("steps a frame"), std::string::npos) << refusal(water);
+  water.simulation.fluid.step = 2e-4f;  // in 57 parts
+  EXPECT_NE(refusal(water).find("steps a frame"), std::string::npos) << refusal(water);
+}
+
 TEST(SimulatedScene, LeavesStandingBodiesExactlyWhereTheyArePlaced) {
   SimulatedScene scene(small_tank(), {body_at("box", {0.45f, 0.1f, 0.2f}, vec3(0.1f))});
   scene.frame(2);
@@ -169,7 +216,12 @@ TEST_F(SimulatedFilesTest, AreReadBackBitForBit) {
     EXPECT_EQ(read.up, Axis::y);
   }
   EXPECT_THROW(write_simulation(scene, {}, folder_ + "/one.ply", 3), Error) << "three frames in one file";
-  EXPECT_THROW(write_simulation(scene, {}, folder_ + "/f_{}.png", 3), Error);
+  for (const char* other : {"/f_{}.png", "/f_{}.vtk", "/f_{}"}) try {
+      write_simulation(scene, {}, folder_ + other, 3);
+      ADD_FAILURE() << other << " was written";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(".ply"), std::string::npos) << error.what();
+    }
 }
 
 TEST_F(SimulatedFilesTest, AreDrawnByTheSceneFileBesideThem) {
