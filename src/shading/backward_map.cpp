@@ -24,7 +24,7 @@ constexpr float kFlattest = 0.05f;
 
 }  // namespace
 
-PlaneMap backward_map(const HeightField& field, const WaterLevel& level, const PlaneLight& light,
+PlaneMap backward_map(const HeightField& field, const WaterLevel& level, const EnteringLight& light,
                       const Image<float>& lit, float plane, int size) {
   const FieldFrame& frame = level.frame();
   PlaneMap map;

@@ -12,7 +12,7 @@ namespace meniscus {
 /// @param lit    of sunlit()
 /// @param plane  m along up, below the water
 /// @param size   texels along the longer side of the field, > 1
-PlaneMap backward_map(const HeightField& field, const WaterLevel& level, const PlaneLight& light,
+PlaneMap backward_map(const HeightField& field, const WaterLevel& level, const EnteringLight& light,
                       const Image<float>& lit, float plane, int size);
 
 }  // namespace meniscus

@@ -49,7 +49,8 @@ FieldOf::FieldOf(const Surface& surface, const Scene& scene, const Bounds& box, 
         height_field_of(surface, up, box, std::max(longer / static_cast<float>(kColumns), 0.5f * surface.spacing()));
 }
 
-float receiving_level(const HeightField& field, const WaterLevel& level, const PlaneLight& light, const Scene& scene) {
+float receiving_level(const HeightField& field, const WaterLevel& level, const EnteringLight& light,
+                      const Scene& scene) {
   const FieldFrame& frame = level.frame();
   std::vector<float> met(static_cast<std::size_t>(kSoundings) * kSoundings, kInfinity);
   parallel_for(met.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -94,7 +95,7 @@ FieldLight field_light(const HeightField& field, const LightSource& sun, const S
   result.level = level;
   if (!level->any() || level->frame().width < 2 || level->frame().height < 2) return result;
   const FieldFrame& frame = level->frame();
-  const PlaneLight light = plane_light(frame, sun.direction, sun.strength, material);
+  const EnteringLight light = entering_light(frame, sun.direction, sun.strength, material);
   Image<float> lit;
   {
     const StageTimer timer(times, "caustics shadows");

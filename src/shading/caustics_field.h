@@ -34,6 +34,7 @@ FieldLight field_light(const HeightField& field, const LightSource& sun, const S
 void superpose(PlaneMap& map, const PlaneMap& simple, float mean);
 
 /// Level of the plane that light through the mean level lands on, m: the median over the field of what is met.
-float receiving_level(const HeightField& field, const WaterLevel& level, const PlaneLight& light, const Scene& scene);
+float receiving_level(const HeightField& field, const WaterLevel& level, const EnteringLight& light,
+                      const Scene& scene);
 
 }  // namespace meniscus

@@ -19,12 +19,12 @@ constexpr float kLeastSkyTaken = 0.30f, kMostSkyTaken = 0.8f, kDeep = 0.02f;
 
 }  // namespace
 
-float PlaneLight::reflectance(float cosine) const {
+float EnteringLight::reflectance(float cosine) const {
   return std::min(1.0f, formulas::fresnel_reflectance(cosine, ior) * specular);
 }
 
-PlaneLight plane_light(const FieldFrame& frame, vec3 sun, vec3 strength, const Material& material) {
-  PlaneLight light;
+EnteringLight entering_light(const FieldFrame& frame, vec3 sun, vec3 strength, const Material& material) {
+  EnteringLight light;
   light.sun = sun;
   light.strength = strength;
   light.ior = material.ior;
@@ -50,8 +50,8 @@ float PlaneMap::at(vec2 place) const {
   return between(value, p.x, p.y);
 }
 
-PlaneCaustics::PlaneCaustics(std::shared_ptr<const WaterLevel> level, const PlaneLight& light, const Material& material,
-                             PlaneMap pattern, FirstSolids solids)
+PlaneCaustics::PlaneCaustics(std::shared_ptr<const WaterLevel> level, const EnteringLight& light,
+                             const Material& material, PlaneMap pattern, FirstSolids solids)
     : level_(std::move(level)),
       light_(light),
       extinction_(caustics_extinction(material)),

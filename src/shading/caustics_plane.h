@@ -8,7 +8,7 @@
 namespace meniscus {
 
 /// The sun's light as still water at the mean level bends and mirrors it.
-struct PlaneLight {
+struct EnteringLight {
   vec3 sun{0, 1, 0};          ///< unit, towards it
   vec3 strength{0.0f};        ///< irradiance on a surface that faces it
   float ior = 1.333f;         ///< of the water
@@ -25,7 +25,7 @@ struct PlaneLight {
   /// Reflectance of the water where the light meets it at this cosine.
   float reflectance(float cosine) const;
 };
-PlaneLight plane_light(const FieldFrame& frame, vec3 sun, vec3 strength, const Material& material);
+EnteringLight entering_light(const FieldFrame& frame, vec3 sun, vec3 strength, const Material& material);
 
 /// Which points of a field the sun reaches: 1, or 0 behind a solid. Empty: it reaches all.
 Image<float> sunlit(const HeightField& field, const WaterLevel& level, const Scene& scene, vec3 sun);
@@ -63,14 +63,14 @@ struct PlaneMap {
 /// What the sun's light is under and beside the water, from a plane map.
 class PlaneCaustics {
  public:
-  PlaneCaustics(std::shared_ptr<const WaterLevel> level, const PlaneLight& light, const Material& material,
+  PlaneCaustics(std::shared_ptr<const WaterLevel> level, const EnteringLight& light, const Material& material,
                 PlaneMap pattern, FirstSolids solids);
   WaterLight::Light at(vec3 point, vec3 normal) const;
   const PlaneMap& pattern() const { return pattern_; }
 
  private:
   std::shared_ptr<const WaterLevel> level_;
-  PlaneLight light_;
+  EnteringLight light_;
   vec3 extinction_, sky_extinction_;
   float soft_;  ///< m over which the waterline goes over from light above it to light under it
   float deep_;  ///< m of water that cover the sky

@@ -5,7 +5,7 @@
 
 namespace meniscus {
 
-PlaneMap simple_caustics(const HeightField& field, const WaterLevel& level, const PlaneLight& light,
+PlaneMap simple_caustics(const HeightField& field, const WaterLevel& level, const EnteringLight& light,
                          const Image<float>& lit, const CausticsOptions& options) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const FieldFrame& frame = level.frame();

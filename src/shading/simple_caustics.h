@@ -9,7 +9,7 @@ namespace meniscus {
 /// through; with options.simple_keeps_mean scaled so that its mean over the water is 1 before that. The first term is
 /// a / 2 where all heights are the same.
 /// @param lit  of sunlit()
-PlaneMap simple_caustics(const HeightField& field, const WaterLevel& level, const PlaneLight& light,
+PlaneMap simple_caustics(const HeightField& field, const WaterLevel& level, const EnteringLight& light,
                          const Image<float>& lit, const CausticsOptions& options);
 
 }  // namespace meniscus

@@ -30,7 +30,7 @@ struct MirroredBeam {
   float flux = -1;  ///< per horizontal area, over that of the sun on what faces it; negative: no water
 };
 
-Image<MirroredBeam> mirrored_beams(const HeightField& field, const FieldFrame& frame, const PlaneLight& light,
+Image<MirroredBeam> mirrored_beams(const HeightField& field, const FieldFrame& frame, const EnteringLight& light,
                                    const Image<float>& lit) {
   Image<MirroredBeam> beams(frame.width, frame.height);
   parallel_for(static_cast<std::size_t>(frame.height), 8, [&](std::size_t begin, std::size_t end) {
@@ -62,7 +62,7 @@ float WallLight::Wall::at(vec2 place) const {
   return between(value, std::clamp(p.x, 0.0f, static_cast<float>(value.width() - 1)), std::max(p.y, 0.0f));
 }
 
-WallLight::WallLight(const HeightField& field, std::shared_ptr<const WaterLevel> level, const PlaneLight& light,
+WallLight::WallLight(const HeightField& field, std::shared_ptr<const WaterLevel> level, const EnteringLight& light,
                      const Image<float>& lit, FirstSolids solids, float top, int size)
     : level_(std::move(level)), light_(light), solids_(std::move(solids)), top_(top) {
   const FieldFrame& frame = level_->frame();

@@ -12,7 +12,7 @@ class WallLight {
   /// @param lit   of sunlit()
   /// @param top   m along up that the maps reach
   /// @param size  texels along the longer side of the field
-  WallLight(const HeightField& field, std::shared_ptr<const WaterLevel> level, const PlaneLight& light,
+  WallLight(const HeightField& field, std::shared_ptr<const WaterLevel> level, const EnteringLight& light,
             const Image<float>& lit, FirstSolids solids, float top, int size);
   /// Irradiance of mirrored light on a surface with this normal; none under water.
   vec3 irradiance(vec3 point, vec3 normal) const;
@@ -32,7 +32,7 @@ class WallLight {
  private:
   float on_wall(const Wall& wall, vec3 point) const;
   std::shared_ptr<const WaterLevel> level_;
-  PlaneLight light_;
+  EnteringLight light_;
   FirstSolids solids_;
   float top_;
   Wall walls_[4];

@@ -18,7 +18,7 @@ using tests::Waves;
 
 PlaneMap map_of(const HeightField& field, vec3 sun, int size) {
   const WaterLevel level(field);
-  const PlaneLight light = plane_light(level.frame(), sun, vec3{1.0f}, tests::clear());
+  const EnteringLight light = entering_light(level.frame(), sun, vec3{1.0f}, tests::clear());
   return backward_map(field, level, light, {}, 0.0f, size);
 }
 

@@ -136,7 +136,7 @@ TEST(PlaneCaustics, LeaveLampsToTriangles) {
 TEST(SimpleCaustics, AreEquation4) {
   HeightField field = field_of(crossing(0.5, 0.02), {0, 0}, {1, 1}, 33);
   const WaterLevel level(field);
-  const PlaneLight light = plane_light(level.frame(), kUp, vec3{1.0f}, tests::clear());
+  const EnteringLight light = entering_light(level.frame(), kUp, vec3{1.0f}, tests::clear());
   CausticsOptions options;
   options.simple_a = 0.7f;
   options.simple_b = -0.9f;

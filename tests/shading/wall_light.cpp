@@ -18,7 +18,7 @@ constexpr double kEta = static_cast<double>(1.333f);
 
 WallLight walls_of(const HeightField& field, vec3 sun, float top, int size = 128) {
   const auto level = std::make_shared<const WaterLevel>(field);
-  const PlaneLight light = plane_light(level->frame(), sun, vec3{1.0f}, tests::clear());
+  const EnteringLight light = entering_light(level->frame(), sun, vec3{1.0f}, tests::clear());
   return WallLight(field, level, light, {}, {}, top, size);
 }
 
