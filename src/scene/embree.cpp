@@ -7,8 +7,9 @@
 namespace meniscus {
 
 RTCDevice embree_device() {
-  // Never released: solids may outlive every static object.
-  static const RTCDevice device = rtcNewDevice("threads=1,user_threads=0");
+  // Never released: solids may outlive every static object. A number of threads given here would limit oneTBB, and with
+  // it all loops of the process, for as long as the device lives.
+  static const RTCDevice device = rtcNewDevice("threads=0");
   if (!device) throw Error(ErrorCode::unsupported, "Embree cannot be started on this machine");
   return device;
 }

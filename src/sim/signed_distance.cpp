@@ -9,10 +9,10 @@
 namespace meniscus {
 namespace {
 
-/// Never released: shapes may outlive every static object. Built on the calling thread, the same for any number of
-/// them.
+/// Never released: shapes may outlive every static object. A number of threads given here would limit all loops of the
+/// process for as long as the device lives.
 RTCDevice device() {
-  static const RTCDevice device = rtcNewDevice("threads=1,user_threads=0");
+  static const RTCDevice device = rtcNewDevice("threads=0");
   if (!device) throw Error(ErrorCode::unsupported, "Embree cannot be started on this machine");
   return device;
 }

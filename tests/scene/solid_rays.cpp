@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -66,6 +68,12 @@ Nearest brute_force(const std::vector<PlacedSolid>& solids, const Ray& ray) {
   }
   nearest.margin = closest_call;
   return nearest;
+}
+
+TEST(Solids, LeaveAllLoopsTheirThreads) {
+  static_cast<void>(make_solid(box_mesh(vec3{0.0f}, vec3{1.0f})));
+  EXPECT_GE(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
+            static_cast<std::size_t>(tbb::info::default_concurrency()));
 }
 
 TEST(SolidRays, MeetWhatTheSumOverAllTrianglesMeets) {
