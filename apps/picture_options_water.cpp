@@ -152,8 +152,9 @@ void PictureArguments::add_eyes(CLI::App& command) {
       "--no-displaced-eye", [](PictureOptions& p) { p.optics.eyes.displaced_eye = false; },
       "Maps are drawn from the eye itself");
   group.flag(
-      "--no-scale-correction", [](PictureOptions& p) { p.optics.eyes.scale_correction = false; },
-      "Refracted parts keep the length that they have from one virtual eye");
+      "--no-scale-correction",
+      [](PictureOptions& p) { p.optics.eyes.scale_correction = p.optics.eyes.object_position = false; },
+      "Refracted parts keep the size that they have from one virtual eye; objects are looked up by direction");
   group.flag(
       "--no-adaptation", [](PictureOptions& p) { p.optics.eyes.adaptation = false; },
       "The surface is not bent towards a plane around objects");
@@ -169,8 +170,12 @@ void PictureArguments::add_eyes(CLI::App& command) {
       },
       "Half widths of the trapezium at the object and at the eye's end, m (default: by the object's size)");
   group.flag(
-      "--per-point", [](PictureOptions& p) { p.optics.eyes.per_point = true; },
-      "Every point of an object from its own virtual eye: for wide objects");
+      "--per-point",
+      [](PictureOptions& p) {
+        p.optics.eyes.per_point = true;
+        p.optics.eyes.object_position = false;
+      },
+      "Every point of an object from its own virtual eye: for wide objects; they are looked up by direction");
   group.number<float>(
       "--adaptation-width", "METRES",
       [](PictureOptions& p, float v) {
