@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "meniscus/formulas/fluids.h"
+#include "sim/parted_solver.h"
 #include "sim/wall_kernel.h"
 
 namespace meniscus {
@@ -17,24 +18,15 @@ constexpr int kFewestIterations = 2;
 /// A particle moves no farther than this in a step, in smoothing lengths; what is faster is slowed.
 constexpr float kFarthest = 2.0f;
 
-class PbfSolver final : public FluidSolver {
+class PbfSolver final : public PartedSolver {
  public:
+  /// @param options  without gaps
   explicit PbfSolver(const FluidOptions& options)
-      : options_(with_defaults(options)), constants_(pbf_constants(options_)), longest_(longest_pbf_step(options_)) {}
-
-  void step(Fluid& fluid, const Boundary& boundary, vec3 gravity, std::span<const vec3> forces, float dt,
-            std::span<Impulse> impulses, StageTimes* times) override {
-    if (fluid.size() == 0) return;
-    const int parts = std::max(1, static_cast<int>(std::ceil(dt / longest_ * 0.999f)));
-    for (int part = 0; part < parts; ++part)
-      part_step(fluid, boundary, gravity, forces, dt / static_cast<float>(parts), impulses, times);
-  }
-  float mean_neighbours() const override { return neighbours_.mean(); }
-  float longest_step() const override { return longest_; }
+      : PartedSolver(longest_pbf_step(options)), options_(options), constants_(pbf_constants(options)) {}
 
  private:
   void part_step(Fluid& fluid, const Boundary& boundary, vec3 gravity, std::span<const vec3> forces, float dt,
-                 std::span<Impulse> impulses, StageTimes* times) {
+                 std::span<Impulse> impulses, StageTimes* times) override {
     const std::size_t count = fluid.size();
     const auto over_pieces = [&](const char* stage, auto body) {
       const StageTimer timer(times, stage);
@@ -99,9 +91,8 @@ class PbfSolver final : public FluidSolver {
   void set_place(std::size_t i, vec3 place) { set_record(state_.place, i, place); }
 
   void predict(const Fluid& fluid, std::size_t given, vec3 outer, float dt) {
-    vec3 velocity = vec3{fluid.vx[given], fluid.vy[given], fluid.vz[given]} + dt * outer;
-    const float speed = length(velocity), fastest = kFarthest * constants_.h / dt;
-    if (!(speed <= fastest)) velocity = std::isfinite(speed) ? velocity * (fastest / speed) : vec3(0.0f);
+    const vec3 velocity =
+        slowed(vec3{fluid.vx[given], fluid.vy[given], fluid.vz[given]} + dt * outer, kFarthest * constants_.h / dt);
     ahead_x_[given] = fluid.x[given] + dt * velocity.x;
     ahead_y_[given] = fluid.y[given] + dt * velocity.y;
     ahead_z_[given] = fluid.z[given] + dt * velocity.z;
@@ -233,8 +224,6 @@ class PbfSolver final : public FluidSolver {
 
   FluidOptions options_;
   PbfConstants constants_;
-  float longest_;
-  Neighbours neighbours_;
   NearWalls walls_;
   ImpulseSums impulses_;
   PbfState state_;
@@ -258,7 +247,7 @@ void PbfState::resize(std::size_t size, bool vorticity) {
 }
 
 std::unique_ptr<FluidSolver> make_pbf_solver(const FluidOptions& options) {
-  return std::make_unique<PbfSolver>(options);
+  return std::make_unique<PbfSolver>(with_defaults(options));
 }
 
 }  // namespace meniscus

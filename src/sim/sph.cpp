@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "meniscus/formulas/fluids.h"
+#include "sim/parted_solver.h"
 #include "sim/wall_kernel.h"
 
 namespace meniscus {
@@ -17,24 +18,15 @@ constexpr float kSurfaceGradient = 0.2f;
 /// A particle moves no farther than this in a step, in smoothing lengths; what is faster is slowed.
 constexpr float kFarthest = 1.0f;
 
-class SphSolver final : public FluidSolver {
+class SphSolver final : public PartedSolver {
  public:
+  /// @param options  without gaps
   explicit SphSolver(const FluidOptions& options)
-      : options_(with_defaults(options)), constants_(sph_constants(options_)), longest_(longest_sph_step(options_)) {}
-
-  void step(Fluid& fluid, const Boundary& boundary, vec3 gravity, std::span<const vec3> forces, float dt,
-            std::span<Impulse> impulses, StageTimes* times) override {
-    if (fluid.size() == 0) return;
-    const int parts = std::max(1, static_cast<int>(std::ceil(dt / longest_ * 0.999f)));
-    for (int part = 0; part < parts; ++part)
-      part_step(fluid, boundary, gravity, forces, dt / static_cast<float>(parts), impulses, times);
-  }
-  float mean_neighbours() const override { return neighbours_.mean(); }
-  float longest_step() const override { return longest_; }
+      : PartedSolver(longest_sph_step(options)), options_(options), constants_(sph_constants(options)) {}
 
  private:
   void part_step(Fluid& fluid, const Boundary& boundary, vec3 gravity, std::span<const vec3> forces, float dt,
-                 std::span<Impulse> impulses, StageTimes* times) {
+                 std::span<Impulse> impulses, StageTimes* times) override {
     const std::size_t count = fluid.size();
     {
       const StageTimer timer(times, "neighbours");
@@ -123,9 +115,7 @@ class SphSolver final : public FluidSolver {
     if (steepness * h > kSurfaceGradient)
       acceleration -= constants_.tension * state_.inverse_density(i) * bend / steepness * fall;
 
-    velocity += dt * acceleration;
-    const float speed = length(velocity), fastest = kFarthest * h / dt;
-    if (!(speed <= fastest)) velocity = std::isfinite(speed) ? velocity * (fastest / speed) : vec3(0.0f);
+    velocity = slowed(velocity + dt * acceleration, kFarthest * h / dt);
     vec3 place = position + dt * velocity;
     if (neighbours_.coincident(i)) place += 1e-3f * h * some_direction(given);
     stop_at_walls(walls, position, place, velocity, [&](const Wall& wall, vec3 change) {
@@ -160,8 +150,6 @@ class SphSolver final : public FluidSolver {
 
   FluidOptions options_;
   SphConstants constants_;
-  float longest_;
-  Neighbours neighbours_;
   NearWalls walls_;
   ImpulseSums impulses_;
   SphState state_;
@@ -179,7 +167,7 @@ void SphState::resize(std::size_t size, bool tension) {
 }
 
 std::unique_ptr<FluidSolver> make_sph_solver(const FluidOptions& options) {
-  return std::make_unique<SphSolver>(options);
+  return std::make_unique<SphSolver>(with_defaults(options));
 }
 
 }  // namespace meniscus
