@@ -175,9 +175,7 @@ Json measure(const TankArguments& arguments) {
   json["height"] = arguments.size.height;
   json["threads"] = thread_count();
   json["rows"] = rows;
-  Json stages_json;
-  for (const auto& [stage, ms] : stages.rows()) stages_json[stage] = ms;
-  json["stages_ms"] = stages_json;
+  json["stages_ms"] = json_of(stages);
   return json;
 }
 
