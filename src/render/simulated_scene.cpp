@@ -130,15 +130,10 @@ std::vector<std::optional<glm::mat4>> SimulatedScene::transforms() const {
 }
 
 Survey SimulatedScene::survey() const {
-  const Foreseen foreseen = this->foreseen();
-  Survey survey;
-  survey.frames = frames();
-  survey.most_particles = foreseen.particles;
-  survey.bounds = foreseen.bounds;
-  survey.spacing = {foreseen.spacing, 3, foreseen.reasoning};
-  survey.up = {foreseen.up, foreseen.reasoning};
-  survey.attributes = foreseen.attributes;
-  return survey;
+  FrameSequence sequence;
+  sequence.frames.resize(frames());
+  sequence.foreseen = foreseen();
+  return survey_frames(sequence);
 }
 
 Foreseen SimulatedScene::foreseen() const {
