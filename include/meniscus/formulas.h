@@ -5,3 +5,4 @@
 #include "meniscus/formulas/fluids.h"
 #include "meniscus/formulas/kernels.h"
 #include "meniscus/formulas/optics.h"
+#include "meniscus/formulas/rain.h"

@@ -51,6 +51,8 @@ enum class Show {
 /// @throws Error invalid_argument
 Show show_of(std::string_view name);
 
+class RainyScene;
+
 /// Everything that one frame is drawn by. settings_of() fills it from guesses; or set what you like.
 struct FrameSettings {
   View view;
@@ -75,8 +77,10 @@ struct FrameSettings {
   bool shadow = true;  ///< the water's soft shadow on the ground
   ToneOptions tone;
   Antialias antialias = Antialias::edges;
-  bool legend = false;    ///< a colour bar, where `colour` is set
-  int drop_isolated = 0;  ///< leave out particles with fewer neighbours than this; 0: none
+  bool legend = false;               ///< a colour bar, where `colour` is set
+  int drop_isolated = 0;             ///< leave out particles with fewer neighbours than this; 0: none
+  std::shared_ptr<RainyScene> rain;  ///< goes on to `time`; may be null
+  double time = 0;                   ///< s of the film, for rain; never less than in the frame before
 };
 
 /// The surfels that SurfaceMethod::surfels draws.
@@ -243,6 +247,73 @@ class Bodies {
   mutable std::vector<Read> read_;  ///< one a body
 };
 
+// --- Rain over a scene --------------------------------------------------------------------------------------
+
+/// What of the rain is drawn.                                                        [Mizukami2013] fig. 10
+enum class RainShown { all, splashes, streaks, neither };
+
+/// The ground that it rains on, beside what the frame's scene is made of.
+struct RainGround {
+  bool there = false;                 ///< false: it rains on bodies, water and the plain ground, which all count as wet
+  GroundOptions cells;                ///< materials and heights are made from what follows
+  std::string materials;              ///< a PNG file: dark asphalt, grey concrete, bright steel; may be empty
+  std::string heights;                ///< a PNG file: black `lowest`, white `highest`; may be empty
+  float lowest = 0, highest = 0.02f;  ///< m
+  std::string mesh;                   ///< name of a body whose height, seen from above, is the ground's; may be empty
+  /// Ruts and slope, made up: `rut_depth` m deep along a, and falling by `slope` m a metre away from the middle of b.
+  float rut_depth = 0, slope = 0;
+  WetLook look;
+};
+
+/// The `rain` section of a scene file.
+struct RainSettings {
+  RainOptions rain;  ///< low = high: around the water, the bodies and what the camera sees nearby
+  RainGround ground;
+  SplashOptions splashes;
+  RippleOptions ripples;  ///< low = high: the ground's region
+  RainLook look;
+  RainShown shown = RainShown::all;
+  bool with_ripples = true;
+  float rained_mm = 0;                            ///< water that has fallen and settled before the film begins
+  GroundMaterial bodies = GroundMaterial::steel;  ///< what meshes without cells count as; they are wet once rained on
+  float shutter = 1.0f / 60;                      ///< s
+  float streak_reach = 12;   ///< m from the eye up to which drops are drawn one by one; beyond, haze
+  std::size_t frames = 100;  ///< where there is no water that has frames
+  double frames_per_second = 25;
+};
+
+/// Rain, its ground, its splashes and ripples as they go on from frame to frame.
+class RainyScene {
+ public:
+  /// @throws Error  as Rain, WetGround, Ripples; as read_png()
+  explicit RainyScene(const RainSettings& settings);
+  ~RainyScene();
+  const RainSettings& settings() const;
+  /// Goes on to `time`, s: drops hit the scene's solids and the water, splash, wet the ground and make rings. The same
+  /// time again changes nothing.
+  /// @param water  may be null; drops that hit it splash as on deep water
+  /// @throws Error invalid_argument: a time that is over
+  void advance(double time, const Scene& scene, const Surface* water, StageTimes* times = nullptr);
+  double time() const;
+  std::size_t splashes() const;  ///< going on
+  std::size_t hits() const;      ///< so far
+  WaterBudget budget() const;    ///< of the ground, with what is in the air as standing
+  /// The ground as a mesh, its cover, the puddles' surface, and rings on deep water; null or empty where there is none.
+  std::shared_ptr<const Solid> relief() const;
+  std::shared_ptr<const GroundCover> cover() const;
+  HeightField puddles() const;
+  HeightField rings() const;
+  /// Splashes and streaks at time().
+  std::vector<WaterPiece> pieces(const View& view) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Frames without particles of a film of rain.
+FrameSequence rain_sequence(const RainSettings& settings, Axis up);
+
 // --- What a user may set -----------------------------------------------------------------------------------
 
 enum class GroundStyle { chequer, plain, none };
@@ -285,6 +356,9 @@ struct PictureOptions {
   std::function<HeightField(double)> heights;  ///< as FrameSettings::heights
   CameraOptions camera;
   std::optional<CameraPath> path;  ///< goes before `camera`
+  float cloud_cover = 0;           ///< as EnvironmentOptions; with rain 1
+  float sky_scale = 1;             ///< factor of the environment's light, >= 0
+  std::optional<RainSettings> rain;
   ToneOptions tone;
   Antialias antialias = Antialias::edges;
 };

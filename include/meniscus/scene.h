@@ -21,6 +21,9 @@ struct EnvironmentOptions {
   vec3 sun_direction{0.4f, 0.8f, 0.45f};
   float sun_radiance_scale = 1.0f;  ///< >= 0
   bool sun_visible = true;          ///< the disc itself in the background; its light comes in any case
+  /// Of the analytic sky, 0 .. 1: 0 clear, 1 the CIE standard overcast sky, which has no sun; between, both mixed.
+  float cloud_cover = 0;
+  float radiance_scale = 1;  ///< of all of it, >= 0: what stays when lamps take over at night
 };
 
 /// Light from all directions. A cheap handle: copies share the tables.
@@ -78,6 +81,18 @@ class WaterLight {
   virtual void at_each(std::span<const vec3> points, std::span<const vec3> normals, std::span<Light> lights) const;
 };
 
+struct SolidHit;
+
+/// What covers the ground: its grain, how wet it is. Made by shading/.
+class GroundCover {
+ public:
+  virtual ~GroundCover() = default;
+  /// Changes what rays have met on the ground plane and on covered solids: albedo, coat, normal.
+  /// @param points  of the hits, world space
+  /// @param widths  of the beams there, m; lists of one length
+  virtual void cover(std::span<const vec3> points, std::span<const float> widths, std::span<SolidHit> hits) const = 0;
+};
+
 /// A ray with a width: `width` m at its origin, growing by `spread` m per metre of its length.
 struct Beam {
   float width = 0;
@@ -132,6 +147,7 @@ struct PlacedSolid {
   std::shared_ptr<const Solid> solid;
   glm::mat4 world_from_solid{1.0f};       ///< affine, invertible
   std::optional<SolidMaterial> material;  ///< instead of the mesh's own
+  bool covered = false;                   ///< it is ground: Scene's ground cover lies on it
 };
 
 enum class TankStyle {
@@ -207,6 +223,8 @@ class Scene {
   void set_solids(std::vector<PlacedSolid> solids);
   void set_tank(const Tank& tank);
   void set_lamps(std::vector<PointLight> lamps);
+  /// Lies on the ground plane and on solids that are `covered`; null: nothing.
+  void set_ground_cover(std::shared_ptr<const GroundCover> cover);
   const Environment& environment() const;
   const Ground& ground() const;
   const Tank& tank() const;

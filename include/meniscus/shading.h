@@ -3,6 +3,7 @@
 
 #include "meniscus/base.h"
 #include "meniscus/scene.h"
+#include "meniscus/sim.h"
 #include "meniscus/surface.h"
 
 namespace meniscus {
@@ -187,5 +188,54 @@ struct CausticsReport {
 /// @param finer  photons along a side of a point of the screen; 0: no reference
 CausticsReport measure_caustics(const Surface& surface, const Scene& scene, const Material& material,
                                 const CausticsOptions& options, StageTimes* times, int finer = 0);
+
+// --- Rain ------------------------------------------------------------------------------------------------------
+
+/// What wet ground looks like.
+struct WetLook {
+  float film_full = 0.0005f;  ///< m of water from which on the film is smooth
+  float bumpiness = 1;        ///< factor of the grain's bumps
+  std::uint64_t seed = 1;     ///< of the grain
+  /// Albedos of dry concrete, asphalt, steel; linear.
+  std::array<vec3, 3> albedo{vec3{0.42f, 0.41f, 0.39f}, vec3{0.11f, 0.11f, 0.115f}, vec3{0.30f, 0.31f, 0.32f}};
+};
+
+/// The ground's grain by its materials; soaked it is darker [LeknerDorf1988], a film of water on it shines. Beyond the
+/// cells the ground goes on as their mirror image.
+/// @param ground  looked at now; later changes do not matter
+std::shared_ptr<const GroundCover> wet_ground_cover(const WetGround& ground, const WetLook& look = {});
+
+/// Light from everything around a place, as far as drops of water care: they show it small and upside down.
+class Surroundings {
+ public:
+  /// @param centre  where the splashes are, m, above the ground
+  /// @param size    px, of a cube map's face
+  Surroundings(const Scene& scene, vec3 centre, int size = 64, StageTimes* times = nullptr);
+  /// Linear radiance from this direction (unit, away from the drop), blurred over about `cone` radians.
+  vec3 radiance(vec3 direction, float cone = 0) const;
+  vec3 mean() const;  ///< over all directions
+  /// Back light: the sun and lamps, as Gaussians of `variance` rad^2.
+  vec3 glare(vec3 point, vec3 direction, float variance) const;
+
+ private:
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
+};
+
+struct RainLook {
+  float ior = 1.333f;
+  float pile_opacity = 0.85f;   ///< of splashes: what is not them shows through, as foam and film do not refract alike
+  bool level_of_detail = true;  ///< pieces smaller than a pixel are drawn as what they cover of it
+  float haze = 0;               ///< 1/m: extinction by rain too far away to be seen drop by drop
+  vec3 haze_radiance{0.0f};     ///< of the light that it scatters instead
+};
+
+/// Draws pieces of splashes and streaks of rain over a shaded picture: nearer over farther, behind what is nearer yet.
+/// Each shows the mirror image of its surroundings (Fresnel), what is behind it refracted, and the light from behind.
+/// @param depth     distance along each pixel's ray, m, to what is solid or water in the picture; infinity: nothing
+/// @param radiance  linear, of the same size; changed
+/// @throws Error    invalid_argument: images of other sizes than the view; unsupported: a cube view
+void draw_rain(const View& view, std::span<const WaterPiece> pieces, const Surroundings& surroundings,
+               const RainLook& look, const Image<float>& depth, Image<vec3>& radiance, StageTimes* times = nullptr);
 
 }  // namespace meniscus

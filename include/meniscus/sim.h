@@ -1,8 +1,10 @@
-/// Water that is simulated: smoothed particles or position based fluids in a tank, with obstacles that can be moved.
+/// Water that is simulated: smoothed particles or position based fluids in a tank, with obstacles that can be moved;
+/// rain and what it does to the ground.
 ///
 /// World space is the tank's own space: a tank that is tilted stays where it is and gravity turns.
 #pragma once
 
+#include <cstdint>
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
 #include <vector>
@@ -151,6 +153,321 @@ class Simulation {
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
+};
+
+// --- Ground in the rain [Mizukami2013] -----------------------------------------------------------------------
+
+enum class GroundMaterial { concrete, asphalt, steel };
+/// @throws Error invalid_argument
+GroundMaterial ground_material_of(std::string_view name);
+std::string_view name_of(GroundMaterial material);
+
+/// How much water is on a place, as the splashes are chosen by it.                       [Mizukami2013] table 1
+enum class Wetness {
+  dry,          ///< it still soaks up water; steel: nothing on it
+  wet,          ///< saturated, less than 3 mm of water on it
+  puddle_3mm,   ///< 3 mm and more
+  puddle_5mm,   ///< 5 mm and more
+  puddle_10mm,  ///< 10 mm and more, and any deep water
+};
+std::string_view name_of(Wetness wetness);
+
+/// Ground as square cells. a and b are the horizontal axes in the order x, y, z, as in HeightField.
+struct GroundOptions {
+  Axis up = Axis::y;
+  vec2 low{0.0f}, high{0.0f};  ///< m along a and b; required; the cells cover at least this
+  float cell = 0.02f;          ///< m, edge of a cell, > 0
+  float level = 0;             ///< m along up, of cells of height 0
+  GroundMaterial material = GroundMaterial::asphalt;
+  /// Stretched over the region, the nearest pixel counts; the first row is the far end of b. Empty: `material`.
+  Image<GroundMaterial> materials;
+  Image<float> heights;  ///< m above `level`, stretched over the region, bilinear; first row as above; may be empty
+  float roughness = -1;  ///< m, standard deviation of noise on the heights; negative: that of each material
+  float roughness_length = 0.1f;  ///< m, of the largest bumps of that noise
+  std::uint64_t seed = 1;         ///< of the noise
+};
+
+/// Where all the water has gone, m^3. fallen = soaked + standing + drained, to rounding.
+struct WaterBudget {
+  double fallen = 0;    ///< given by add() and rain()
+  double soaked = 0;    ///< in the ground
+  double standing = 0;  ///< on it
+  double drained = 0;   ///< over the border
+};
+
+/// Which cells are how wet, and how water goes from one to the next.                     [Mizukami2013] 3.1.2, 4.6.1
+class WetGround {
+ public:
+  /// @throws Error  invalid_argument: an option outside its range; limit_exceeded: more than 2^26 cells
+  explicit WetGround(GroundOptions options);
+  const GroundOptions& options() const { return options_; }
+  int width() const { return width_; }    ///< cells along a
+  int height() const { return height_; }  ///< cells along b
+  std::size_t size() const { return bed_.size(); }
+  /// Index i + width() * j of the cell that holds the point's place; none outside.
+  std::optional<std::size_t> cell_at(vec3 point) const;
+  /// Middle of a cell at the ground's height, m.
+  vec3 place(std::size_t cell) const;
+  GroundMaterial material(std::size_t cell) const { return material_[cell]; }
+  float bed(std::size_t cell) const { return bed_[cell]; }         ///< m along up, of the ground
+  double depth(std::size_t cell) const { return depth_[cell]; }    ///< m, of the water on it
+  double soaked(std::size_t cell) const { return soaked_[cell]; }  ///< m of water in it
+  double capacity(std::size_t cell) const;                         ///< m that it can soak up
+  Wetness wetness(std::size_t cell) const;
+  /// Water of one hit, m^3: soaks in, then is shared with the four neighbours; over the border it is drained.
+  ///                                                                                    [Mizukami2013] 4.6.1, fig. 7
+  void add(std::size_t cell, double volume);
+  /// Water on all cells alike, m; soaks in first. Does not flow yet.
+  void rain(double depth);
+  /// Water runs to lower neighbours for this long, s, as a sheet on rough ground does; a film stays.
+  void flow(double seconds);
+  /// Where water comes to rest: hollows filled level, the rest over the border.          [Barnes2020]
+  void settle();
+  WaterBudget budget() const;
+
+ private:
+  GroundOptions options_;
+  int width_ = 0, height_ = 0;
+  std::vector<float> bed_;
+  std::vector<GroundMaterial> material_;
+  std::vector<double> depth_, soaked_;
+  double fallen_ = 0, drained_ = 0;
+};
+
+// --- Splashes [Mizukami2013] ---------------------------------------------------------------------------------
+
+enum class SplashKind {
+  none,
+  scattering,  ///< piles that fly out and let droplets go                                [Mizukami2013] 4.1
+  crown_cone,  ///< a crown, then a cone that lets one drop go upwards                     [Mizukami2013] 4.2
+  disk,        ///< the drop stays, flat                                                  [Mizukami2013] 4.3
+};
+std::string_view name_of(SplashKind kind);
+/// By section 2.2 and table 1.
+SplashKind splash_kind(GroundMaterial material, Wetness wetness);
+
+enum class DropSize { small, medium, large };
+DropSize drop_size_of(float diameter);  ///< m
+
+/// What table 1 allows for a splash. Values are drawn from normal distributions cut off at the ends.
+struct SplashRanges {
+  int fewest = 0, most = 0;                                   ///< droplets that leave
+  float lowest_deg = 0, highest_deg = 0;                      ///< shooting-out angle above the ground
+  float slowest = 0, fastest = 0;                             ///< initial velocity, m/s
+  float number_mean = 0, angle_mean_deg = 0, speed_mean = 0;  ///< of the distributions before they are cut
+  float number_sigma = 0, angle_sigma_deg = 0, speed_sigma = 0;
+};
+/// @throws Error invalid_argument: a pair without droplets
+SplashRanges splash_ranges(GroundMaterial material, Wetness wetness, DropSize size);
+
+/// A drop that hits something.
+struct Impact {
+  std::uint64_t id = 0;     ///< all random numbers of its splash come from it
+  double time = 0;          ///< s
+  vec3 point{0.0f};         ///< m
+  vec3 normal{0, 1, 0};     ///< unit, of what is hit
+  vec3 velocity{0.0f};      ///< m/s, of the drop
+  float diameter = 0.002f;  ///< m
+  vec3 wind{0.0f};          ///< m/s, over the place
+  GroundMaterial material = GroundMaterial::asphalt;
+  Wetness wetness = Wetness::dry;
+};
+
+/// A droplet of a splash on its orbit: eq. 1 with the drag of its first moment, relative to the wind.
+struct Droplet {
+  vec3 start{0.0f};     ///< m
+  vec3 velocity{0.0f};  ///< m/s, at its start
+  float radius = 0;     ///< m
+  float drag = 0;       ///< 1/s, F / m of eq. 1
+  float leaves = 0;     ///< s after the impact: before, it is the tip of a pile
+  float lands = 0;      ///< s after the impact: back at the height of the ground
+};
+
+/// A piece of a splash or of the rain, as it is drawn.
+struct WaterPiece {
+  enum class Kind : std::uint8_t {
+    pyramid,  ///< quadrangular: `from` the middle of its base, `to` its tip, `across` half a diagonal of the base
+    sphere,   ///< `from` its centre, `radius`
+    disk,     ///< `from` its centre, `across` its unit normal, `radius`
+    streak,   ///< a drop that goes from `from` to `to` while the shutter is open, `radius`
+  } kind = Kind::sphere;
+  vec3 from{0.0f}, to{0.0f}, across{0.0f};  ///< m
+  float radius = 0;                         ///< m
+  float opacity = 1;                        ///< 0 .. 1: how much of it is there; nothing appears or goes at once
+};
+
+struct SplashOptions {
+  vec3 up{0, 1, 0};             ///< unit
+  vec3 gravity{0, -9.81f, 0};   ///< m/s^2
+  float growth_time = 0.03f;    ///< s after which a pile lets its droplet go
+  float growth_length = 0.02f;  ///< m from its start after which it does, whichever comes first
+  float most_time = 2;          ///< s after which a splash is over in any case
+  bool secondary = false;       ///< droplets that land on water splash themselves, once
+  std::uint64_t seed = 1;
+};
+
+/// A droplet that has come down.
+struct Landing {
+  double time = 0;  ///< s
+  vec3 point{0.0f};
+  double volume = 0;  ///< m^3
+  float radius = 0;   ///< m
+  float speed = 0;    ///< m/s
+};
+
+/// All splashes that are going on. What they look like at a time depends on impacts and time only, not on when it is
+/// asked.
+class Splashes {
+ public:
+  /// @throws Error invalid_argument
+  explicit Splashes(const SplashOptions& options);
+  /// Nothing where splash_kind() is none.
+  /// @return m^3 that fly away from the place; they come down again as landings
+  double add(const Impact& impact);
+  /// What comes down after `from` and not after `until`, in order of time. Landings are dropped with their splash.
+  std::vector<Landing> landings(double from, double until) const;
+  /// Forgets splashes that are over at `time`.
+  void retire(double time);
+  std::size_t size() const;
+  std::size_t droplets() const;
+  /// The pieces at `time`, in the order of the impacts.
+  /// @param view  splashes that are smaller than a pixel of it become one piece of the same light; those out of it are
+  ///              left out; null: all, whole
+  void pieces(double time, const View* view, std::vector<WaterPiece>& pieces) const;
+
+ private:
+  struct Splash {
+    Impact impact;
+    SplashKind kind = SplashKind::none;
+    std::size_t first = 0, count = 0;  ///< of droplets_
+    float circle = 0;                  ///< m, radius of the initial circle; of the disk
+    float cone_starts = 0;             ///< s after the impact
+    float ends = 0;                    ///< s after the impact
+    float reach = 0;                   ///< m from the point, of any of its pieces at any time
+  };
+  SplashOptions options_;
+  std::vector<Splash> splashes_;
+  std::vector<Droplet> droplets_;
+};
+
+// --- Rain ------------------------------------------------------------------------------------------------------
+
+struct WindOptions {
+  vec3 velocity{0.0f};    ///< m/s, the mean
+  float gust = 0;         ///< m/s, standard deviation of the speed along the mean (half of it across)
+  float gust_period = 4;  ///< s, of the slowest gusts
+  std::uint64_t seed = 1;
+  /// Points with the attribute "velocity", m/s, instead of `velocity`; between them interpolated, beyond them held.
+  std::shared_ptr<const Particles> field;
+};
+
+/// The wind; gusts are the same everywhere, the field stands still.
+class Wind {
+ public:
+  /// @throws Error invalid_argument: values that are not finite, a field without velocities
+  explicit Wind(const WindOptions& options);
+  vec3 at(vec3 point, double time) const;  ///< m/s
+  bool still() const;                      ///< the same everywhere at all times
+ private:
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
+};
+
+struct RainOptions {
+  float rate_mm_h = 10;      ///< > 0: mm of water an hour
+  float smallest_mm = 0.5f;  ///< diameters of the drops that are made one by one; smaller ones fall as mist
+  float largest_mm = 6;
+  Axis up = Axis::y;
+  vec2 low{0.0f}, high{0.0f};                                 ///< m along a and b: where the drops reach `level`
+  float level = 0;                                            ///< m along up
+  float top = 8;                                              ///< m above `level` from which on drops are followed
+  double start = 0;                                           ///< s
+  double duration = std::numeric_limits<double>::infinity();  ///< s
+  WindOptions wind;
+  /// Part of the drops that is made; each of them brings the water of 1 / share. 0: as much as most_per_second allows.
+  float share = 0;
+  double most_per_second = 200000;
+  std::uint64_t seed = 1;
+};
+
+/// A drop of the rain, known by where and when it would reach the level if nothing stood in its way.
+struct RainDrop {
+  std::uint64_t id = 0;
+  float diameter = 0;  ///< m
+  double time = 0;     ///< s, at `place`
+  vec3 place{0.0f};    ///< m, at the level
+};
+
+/// Rain with the sizes of [MarshallPalmer1948] that falls as fast as [GunnKinzer1949] measured, carried by the wind.
+/// Any time can be asked for in any order.
+class Rain {
+ public:
+  /// @throws Error  invalid_argument
+  explicit Rain(const RainOptions& options);
+  const RainOptions& options() const { return options_; }
+  float share() const { return share_; }  ///< part of the drops that is made
+  double drops_per_second() const;        ///< made ones, over the whole region, while it rains
+  double rate_of_mist() const;            ///< m/s of water that falls in drops that are not made
+  /// Drops that reach the level after `from` and not after `until`, in order of time; ids are theirs for ever.
+  std::vector<RainDrop> arriving(double from, double until) const;
+  /// Where the drop is at a time before (or after) it reaches the level.
+  vec3 position(const RainDrop& drop, double time) const;
+  vec3 velocity(const RainDrop& drop, double time) const;  ///< m/s
+  /// The drop's way from the top down to the level as a chain of points with times, at least two; straight between.
+  struct Way {
+    std::vector<vec3> points;
+    std::vector<double> times;
+  };
+  Way way(const RainDrop& drop) const;
+  /// Water that the drop brings, m^3: its own over share().
+  double volume(const RainDrop& drop) const;
+  /// Fraction of light that all drops together take from a metre of a ray, 1/m.
+  float extinction() const;
+  const Wind& wind() const { return wind_; }
+
+ private:
+  RainOptions options_;
+  Wind wind_;
+  float share_ = 1;
+};
+
+// --- Ripples ---------------------------------------------------------------------------------------------------
+
+struct RippleOptions {
+  Axis up = Axis::y;
+  vec2 low{0.0f}, high{0.0f};  ///< m along a and b
+  float step = 0.01f;          ///< m between points
+  float wavelength = 0.03f;  ///< m, of the waves whose speed is right at any depth; infinity: shallow water, c^2 = g h
+  float surface_tension = 0.0728f;  ///< N/m
+  float damping = 2;                ///< 1/s, of the waves' heights
+  float strength = 1;               ///< factor of what a hit does
+};
+
+/// Small waves on thin water: u_tt = div(c^2 grad u) - 2 damping u_t on points over water, mirrored at its shores.
+class Ripples {
+ public:
+  /// @throws Error invalid_argument; limit_exceeded: more than 2^26 points
+  explicit Ripples(const RippleOptions& options);
+  const RippleOptions& options() const { return options_; }
+  int width() const { return width_; }    ///< points along a, the first at low
+  int height() const { return height_; }  ///< points along b
+  vec3 place(int i, int j, float level) const;
+  /// m of water under each point, i + width() j; none where <= 0. Waves that stood on what is dry now are lost.
+  void set_depths(std::vector<float> depths);
+  /// A drop falls in: a crater with a rim around it, without water made or lost on whole water.
+  /// @param speed  m/s, downwards
+  void hit(vec3 point, float diameter, float speed);
+  void advance(double seconds);
+  std::span<const float> heights() const { return now_; }  ///< m over the still level
+  /// m/s, of rings on water of this depth.
+  float speed(float depth) const;
+  double energy() const;  ///< m^4/s^2: potential and kinetic together, per rho; only falls without hits
+
+ private:
+  RippleOptions options_;
+  int width_ = 0, height_ = 0;
+  std::vector<float> depths_, speeds2_, now_, before_;
+  double left_ = 0;  ///< s not yet advanced
 };
 
 }  // namespace meniscus

@@ -307,6 +307,16 @@ void adapt(HeightField& field, std::span<const PlaneAdaptation> planes);
 /// @param want_thickness  false: see() leaves the thickness zero; thickness() still tells it
 std::unique_ptr<Surface> make_height_field_surface(HeightField field, bool sides = true, bool want_thickness = true);
 
+// --- Water in the rain ---------------------------------------------------------------------------------------
+
+/// A surface whose normals are bent as small waves on it would bend them, where it looks up.
+/// @param ripples  `height` is m over the surface, 0 at rest; `floor` does not matter; nothing beyond its border
+std::unique_ptr<Surface> make_rippled_surface(std::unique_ptr<Surface> water, HeightField ripples);
+
+/// Water and, apart from it, puddles: whichever is nearer is seen. Either may be without water.
+/// @param puddles  without sides: solid ground stands around them
+std::unique_ptr<Surface> make_joint_surface(std::unique_ptr<Surface> water, HeightField puddles);
+
 // --- Particles as they are ---------------------------------------------------------------------------------
 
 /// One ball a particle, no surface between them: a look at the raw particles.
