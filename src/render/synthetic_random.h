@@ -1,26 +1,21 @@
 /// Random numbers for made-up scenes.
 #pragma once
 
-#include <cstdint>
+#include "base/random.h"
 
 namespace meniscus {
 
-/// Independent of libraries, so that a scene is the same everywhere: SplitMix64.               [Steele2014]
+/// Independent of libraries, so that a scene is the same everywhere.
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t bits() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
+  explicit Random(std::uint64_t seed) : draws_(seed) {}
+  std::uint64_t bits() { return draws_.bits(); }
   /// In [0, 1).
   float unit() { return static_cast<float>(bits() >> 40) * 0x1p-24f; }
   float between(float low, float high) { return low + (high - low) * unit(); }
 
  private:
-  std::uint64_t state_;
+  Draws draws_;
 };
 
 }  // namespace meniscus

@@ -11,6 +11,7 @@
 #include <glm/mat3x3.hpp>
 #include <numbers>
 
+#include "base/random.h"
 #include "meniscus/surface.h"
 
 namespace meniscus::surface_tests {
@@ -20,16 +21,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Radius of a sphere of one particle's volume, in spacings.
 constexpr double kDropRadius = 0.6203504908994;
 
-/// Uniform numbers that are the same everywhere (SplitMix64).
+/// Uniform numbers that are the same everywhere.
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t bits() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
+  explicit Random(std::uint64_t seed) : draws_(seed) {}
+  std::uint64_t bits() { return draws_.bits(); }
   float between(float low, float high) { return low + (high - low) * (static_cast<float>(bits() >> 40) * 0x1p-24f); }
   vec3 in_cube(float half) {
     const float x = between(-half, half), y = between(-half, half);
@@ -44,7 +40,7 @@ class Random {
   }
 
  private:
-  std::uint64_t state_;
+  Draws draws_;
 };
 
 inline void add(Particles& particles, vec3 p) {
