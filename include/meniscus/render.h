@@ -274,7 +274,8 @@ struct RainSettings {
   RainLook look;
   RainShown shown = RainShown::all;
   bool with_ripples = true;
-  float rained_mm = 0;                            ///< water that has fallen and settled before the film begins
+  Bounds water;         ///< m; where deep water can be in any frame, and rings on it; empty: where it is in the first
+  float rained_mm = 0;  ///< water that has fallen and settled before the film begins
   GroundMaterial bodies = GroundMaterial::steel;  ///< what meshes without cells count as; they are wet once rained on
   float shutter = 1.0f / 60;                      ///< s
   float streak_reach = 12;   ///< m from the eye up to which drops are drawn one by one; beyond, haze
@@ -285,8 +286,10 @@ struct RainSettings {
 /// Rain, its ground, its splashes and ripples as they go on from frame to frame.
 class RainyScene {
  public:
-  /// @throws Error  as Rain, WetGround, Ripples; as read_png()
-  explicit RainyScene(const RainSettings& settings);
+  /// @param seen_from_above  what the ground's heights are taken from where settings.ground.mesh names a body; may be
+  ///                         null else
+  /// @throws Error  as Rain, WetGround, Ripples; as read_png(); invalid_argument: a mesh that is not given
+  explicit RainyScene(const RainSettings& settings, const Scene* seen_from_above = nullptr);
   ~RainyScene();
   const RainSettings& settings() const;
   /// Goes on to `time`, s: drops hit the scene's solids and the water, splash, wet the ground and make rings. The same
@@ -355,9 +358,9 @@ struct PictureOptions {
   HeightFieldOptions height_field;
   std::function<HeightField(double)> heights;  ///< as FrameSettings::heights
   CameraOptions camera;
-  std::optional<CameraPath> path;  ///< goes before `camera`
-  float cloud_cover = 0;           ///< as EnvironmentOptions; with rain 1
-  float sky_scale = 1;             ///< factor of the environment's light, >= 0
+  std::optional<CameraPath> path;    ///< goes before `camera`
+  std::optional<float> cloud_cover;  ///< as EnvironmentOptions; default 0, with rain 1
+  float sky_scale = 1;               ///< factor of the environment's light, >= 0
   std::optional<RainSettings> rain;
   ToneOptions tone;
   Antialias antialias = Antialias::edges;
