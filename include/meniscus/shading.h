@@ -217,8 +217,10 @@ class Surroundings {
   /// Back light: the sun and lamps, as Gaussians of `variance` rad^2.
   vec3 glare(vec3 point, vec3 direction, float variance) const;
 
- private:
   struct Parts;
+  const Parts& parts() const { return *parts_; }
+
+ private:
   std::shared_ptr<const Parts> parts_;
 };
 

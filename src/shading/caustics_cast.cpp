@@ -64,14 +64,14 @@ struct Overview {
   }
 };
 
-Overview overview_of(const Image<Landing>& landings, const View& view, std::span<const vec3> sides) {
+Overview overview_of(const Image<LightLanding>& landings, const View& view, std::span<const vec3> sides) {
   constexpr int kRows = 16;
   std::vector<Overview> parts(static_cast<std::size_t>((landings.height() + kRows - 1) / kRows));
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
       for (int y = static_cast<int>(p) * kRows; y < std::min(static_cast<int>(p + 1) * kRows, landings.height()); ++y)
         for (int x = 0; x < landings.width(); ++x) {
-          const Landing& landing = landings(x, y);
+          const LightLanding& landing = landings(x, y);
           if (landing.state != LandingState::landed) continue;
           Overview& part = parts[p];
           part.path += static_cast<double>(landing.path);
@@ -185,7 +185,7 @@ UnbentLight unbent_of(const VirtualScreen& screen, const LightSource& light, con
 }
 
 /// Draws the landings that a view sees.
-void add_map(LightCast& cast, const Image<Landing>& landings, const Overview& overview, const View& whole,
+void add_map(LightCast& cast, const Image<LightLanding>& landings, const Overview& overview, const View& whole,
              SceneMap solids, int size, const LightSource& light, bool first) {
   // The sun's disc, and the facets of the triangles.
   const float path = static_cast<float>(overview.path / static_cast<double>(std::max<std::size_t>(overview.landed, 1)));
@@ -233,7 +233,7 @@ LightCast cast_light(const Surface& surface, const LightSource& light, const Bou
   const View whole = view_along(bent, reach(box, scene, up, bent, -to_light), up, solids_size, kMargin);
   const float top = glm::dot(box.centre(), up) + 0.5f * glm::dot(box.extent(), glm::abs(up));
   SceneMap solids;
-  Image<Landing> landings;
+  Image<LightLanding> landings;
   {
     const StageTimer timer(times, "caustics intersect");
     if (material.transparent)

@@ -17,7 +17,7 @@ constexpr float kTouching = 1.5f;
 /// Where the straight way down holds this part of water and more, bent light does not leave it either.
 constexpr float kFull = 0.9f;
 
-/// What happens at an interface; two bits each in Landing::way.
+/// What happens at an interface; two bits each in LightLanding::way.
 enum Event : std::uint8_t { came_out = 1, was_mirrored = 2, came_in = 3 };
 
 /// The light of one point after the interfaces so far.
@@ -36,7 +36,7 @@ struct Parcel {
 
 class Follower {
  public:
-  Follower(const Surface& surface, const Scene& scene, const Material& material, Image<Landing>& landings)
+  Follower(const Surface& surface, const Scene& scene, const Material& material, Image<LightLanding>& landings)
       : scene_(scene),
         material_(material),
         landings_(landings),
@@ -65,7 +65,7 @@ class Follower {
       parcel.inside = !parcel.inside;
     } else {
       if (parcel.mirrored) {
-        Landing& landing = landings_[parcel.index];
+        LightLanding& landing = landings_[parcel.index];
         landing.state = LandingState::trapped;
         landing.passed = vec3{0.0f};
         parcel.done = true;
@@ -84,7 +84,7 @@ class Follower {
   void finish(Parcel& parcel) const {
     parcel.done = true;
     if (parcel.way == 0) return;  // as it landed before
-    Landing& landing = landings_[parcel.index];
+    LightLanding& landing = landings_[parcel.index];
     landing.way = parcel.way;
     landing.later = parcel.later;
     landing.exit = parcel.exit;
@@ -116,13 +116,13 @@ class Follower {
 
   const Scene& scene_;
   const Material& material_;
-  Image<Landing>& landings_;
+  Image<LightLanding>& landings_;
   vec3 extinction_;
   float touching_;
 };
 
 /// Whether the straight way from a point to the floor may leave the water.
-bool may_leave(const VirtualScreen& screen, const Landing& landing, int x, int y) {
+bool may_leave(const VirtualScreen& screen, const LightLanding& landing, int x, int y) {
   if (landing.state != LandingState::landed) return true;
   const Ray ray = screen.ray(x, y);
   const float along = std::abs(glm::dot(ray.direction, landing.normal));
@@ -133,7 +133,7 @@ bool may_leave(const VirtualScreen& screen, const Landing& landing, int x, int y
 }  // namespace
 
 void follow(const VirtualScreen& screen, const Surface& surface, const Scene& scene, const Material& material,
-            Image<Landing>& landings) {
+            Image<LightLanding>& landings) {
   const Follower follower(surface, scene, material, landings);
   const bool thickness_known =
       std::any_of(screen.seen.thickness.begin(), screen.seen.thickness.end(), [](float t) { return t > 0; });
@@ -144,7 +144,7 @@ void follow(const VirtualScreen& screen, const Surface& surface, const Scene& sc
     for (int left = 0; left < screen.width; left += kSquare)
       for (int y = top; y < std::min(top + kSquare, screen.height); ++y)
         for (int x = left; x < std::min(left + kSquare, screen.width); ++x) {
-          const Landing& landing = landings(x, y);
+          const LightLanding& landing = landings(x, y);
           if (landing.state == LandingState::dry || !(landing.transmittance > 0)) continue;
           if (thickness_known && !may_leave(screen, landing, x, y)) continue;
           Parcel parcel;

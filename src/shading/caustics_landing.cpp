@@ -40,8 +40,8 @@ class Lander {
           std::any_of(screen.seen.thickness.begin(), screen.seen.thickness.end(), [](float t) { return t > 0; });
   }
 
-  Landing land(int x, int y) const {
-    Landing landing;
+  LightLanding land(int x, int y) const {
+    LightLanding landing;
     landing.state = LandingState::lost;
     landing.covered = screen_.seen.coverage(x, y);
     landing.from = landing.exit = screen_.point(x, y);
@@ -80,7 +80,7 @@ class Lander {
 
  private:
   /// Point and normal of what the ray meets first.
-  bool meet(const Ray& ray, Landing& landing) const {
+  bool meet(const Ray& ray, LightLanding& landing) const {
     if (map_ && meet_in_map(ray, landing)) return true;
     const SolidHit hit = scene_.hit(ray);
     if (!hit.found()) return false;
@@ -90,7 +90,7 @@ class Lander {
   }
 
   /// Fails where the iteration does not come to its end in the picture.
-  bool meet_in_map(const Ray& ray, Landing& landing) const {
+  bool meet_in_map(const Ray& ray, LightLanding& landing) const {
     const vec3 start = map_->view.project(ray.origin);
     const ImageSpaceHit hit = image_space_hit(
         {map_->view, &map_->depth}, ray, {start.x, start.y},
@@ -150,10 +150,11 @@ SceneMap see_solids(const View& view, const Scene& scene, FunctionRef<float(cons
 
 vec3 caustics_extinction(const Material& material) { return material.extinction + 0.35f * material.scattering; }
 
-Image<Landing> land(const VirtualScreen& screen, const Surface& surface, const LightSource& light, const Scene& scene,
-                    const Material& material, const SceneMap* map, const CausticsOptions& options) {
+Image<LightLanding> land(const VirtualScreen& screen, const Surface& surface, const LightSource& light,
+                         const Scene& scene, const Material& material, const SceneMap* map,
+                         const CausticsOptions& options) {
   const Lander lander(screen, surface, light, scene, material, map, options);
-  Image<Landing> landings(screen.width, screen.height);
+  Image<LightLanding> landings(screen.width, screen.height);
   parallel_for(static_cast<std::size_t>(screen.height), 8, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
       for (int x = 0; x < screen.width; ++x)
@@ -164,7 +165,7 @@ Image<Landing> land(const VirtualScreen& screen, const Surface& surface, const L
   return landings;
 }
 
-vec3 caustic_intensity(vec3 light, const Landing& landing, vec3 extinction, float flux_ratio, vec3 reflectance,
+vec3 caustic_intensity(vec3 light, const LightLanding& landing, vec3 extinction, float flux_ratio, vec3 reflectance,
                        vec3 ambient) {
   return light * landing.cos_i * landing.transmittance * formulas::beer_lambert(extinction, landing.path) * flux_ratio *
              reflectance +

@@ -33,7 +33,7 @@ enum class LandingState : std::uint8_t {
 };
 
 /// One point of the screen: its light's way through the water.
-struct Landing {
+struct LightLanding {
   vec3 from{0.0f};       ///< s of the paper, on the water, m
   vec3 point{0.0f};      ///< c of the paper, on a solid, m
   vec3 normal{0.0f};     ///< unit, of the solid's flat face, against the light
@@ -57,8 +57,9 @@ vec3 caustics_extinction(const Material& material);
 
 /// @param map  for the iteration; null: every ray meets the scene by itself
 /// @return     of the screen's size
-Image<Landing> land(const VirtualScreen& screen, const Surface& surface, const LightSource& light, const Scene& scene,
-                    const Material& material, const SceneMap* map, const CausticsOptions& options);
+Image<LightLanding> land(const VirtualScreen& screen, const Surface& surface, const LightSource& light,
+                         const Scene& scene, const Material& material, const SceneMap* map,
+                         const CausticsOptions& options);
 
 /// Follows light that leaves the water before it lands: out at the far side or mirrored there once, through the air
 /// into the next water or onto a solid. What has met its last interface goes on straight; light that would be mirrored
@@ -66,13 +67,13 @@ Image<Landing> land(const VirtualScreen& screen, const Surface& surface, const L
 /// (caustics_follow.cpp)
 /// @param surface  one that can be marched
 void follow(const VirtualScreen& screen, const Surface& surface, const Scene& scene, const Material& material,
-            Image<Landing>& landings);
+            Image<LightLanding>& landings);
 
 /// Eq. 3 of the paper as it stands, with the flux ratio of one triangle.
 /// @param flux_ratio   F_c = S / S_c, the triangle's area on the water by that on the solid
 /// @param reflectance  f_r
 /// @param ambient      L_a
-vec3 caustic_intensity(vec3 light, const Landing& landing, vec3 extinction, float flux_ratio, vec3 reflectance,
+vec3 caustic_intensity(vec3 light, const LightLanding& landing, vec3 extinction, float flux_ratio, vec3 reflectance,
                        vec3 ambient);
 
 }  // namespace meniscus

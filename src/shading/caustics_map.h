@@ -59,7 +59,7 @@ class UnbentLight {
 struct LightCast {
   LightSource light;
   VirtualScreen screen;
-  Image<Landing> landings;          ///< empty unless they were asked for
+  Image<LightLanding> landings;     ///< empty unless they were asked for
   std::vector<CausticsMap> maps;    ///< the first along the light in flat water, others along the horizon
   std::vector<UnbentLight> unbent;  ///< one
   float spacing = 0;                ///< m between neighbouring points of the screen, about

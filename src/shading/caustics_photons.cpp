@@ -25,13 +25,13 @@ Image<vec3> photon_map(const Surface& surface, const LightCast& cast, const Scen
                               glm::dot(screen.seen.normal[i], screen.seen.normal[i]) > 0.25f;
   CausticsOptions options;
   options.single_interface = single_interface;
-  const Image<Landing> landings = land(screen, surface, cast.light, scene, material, nullptr, options);
+  const Image<LightLanding> landings = land(screen, surface, cast.light, scene, material, nullptr, options);
 
   Image<vec3> texels(view.width, view.height);
   const float texel = view.pixel_size(0.0f), per_area = 1.0f / (texel * texel);
   for (int y = 0; y < screen.height; ++y)
     for (int x = 0; x < screen.width; ++x) {
-      const Landing& landing = landings(x, y);
+      const LightLanding& landing = landings(x, y);
       if (landing.state != LandingState::landed || -glm::dot(landing.normal, view.forward) < kGrazingCosine ||
           map.solids().hides(landing.point, landing.normal).surely)
         continue;

@@ -45,8 +45,8 @@ struct Vertex {
 
 class Triangles {
  public:
-  Triangles(const VirtualScreen& screen, const LightSource& light, const Image<Landing>& landings, const View& view,
-            const SceneMap& solids, bool balanced)
+  Triangles(const VirtualScreen& screen, const LightSource& light, const Image<LightLanding>& landings,
+            const View& view, const SceneMap& solids, bool balanced)
       : screen_(screen),
         light_(light),
         landings_(landings),
@@ -82,11 +82,11 @@ class Triangles {
   struct Point {
     int x, y;
   };
-  const Landing& landing(Point p) const { return landings_(p.x, p.y); }
+  const LightLanding& landing(Point p) const { return landings_(p.x, p.y); }
   const Vertex& vertex(Point p) const { return vertices_(p.x, p.y); }
 
   void prepare(int x, int y, const SceneMap& solids) {
-    const Landing& landing = landings_(x, y);
+    const LightLanding& landing = landings_(x, y);
     Vertex& vertex = vertices_(x, y);
     vertex.wet = landing.state != LandingState::dry;
     vertex.landed = landing.state == LandingState::landed;
@@ -108,7 +108,7 @@ class Triangles {
   }
 
   bool together(Point p, Point q) const {
-    const Landing &a = landing(p), &b = landing(q);
+    const LightLanding &a = landing(p), &b = landing(q);
     if (a.state != LandingState::landed || b.state != LandingState::landed || a.way != b.way) return false;
     const vec3 chord = b.from - a.from;
     const float length_squared = glm::dot(chord, chord);
@@ -139,11 +139,11 @@ class Triangles {
     if (!balanced_ && va.layer == Layer::grazing && vb.layer == Layer::grazing && vc.layer == Layer::grazing) return;
     const Layer layer = common(va.layer, common(vb.layer, vc.layer));
     if (joined && (layer != Layer::grazing || (va.layer == vb.layer && vb.layer == vc.layer))) {
-      const Landing &la = landing(a), &lb = landing(b), &lc = landing(c);
+      const LightLanding &la = landing(a), &lb = landing(b), &lc = landing(c);
       const vec3 power = arriving(la.from, lb.from, lc.from) / 3.0f;
       const vec3 passed = la.covered * la.passed + lb.covered * lb.passed + lc.covered * lc.passed;
       if (balanced_)
-        for (const Landing* corner : {&la, &lb, &lc}) account(power, *corner, layer, out.balance);
+        for (const LightLanding* corner : {&la, &lb, &lc}) account(power, *corner, layer, out.balance);
       if (layer == Layer::grazing) return;
       LightPolygon polygon;
       polygon.corner[0] = va.at;
@@ -162,7 +162,7 @@ class Triangles {
   /// The third of the triangle that is nearest to `a`, as if the water and the solid went on around it as they are
   /// there.
   void add_shard(Point a, Point b, Point c, const Output& out) const {
-    const Landing& here = landing(a);
+    const LightLanding& here = landing(a);
     const Vertex& v = vertex(a);
     if (!balanced_ && v.layer == Layer::grazing) return;
     const vec3 from = here.from;
@@ -190,7 +190,7 @@ class Triangles {
   /// where the water goes on, else by one in parallel.
   /// @param beside  where the water would be at `b`
   vec3 continued(Point a, Point b, vec3 beside) const {
-    const Landing &here = landing(a), &there = landing(b);
+    const LightLanding &here = landing(a), &there = landing(b);
     const bool own = together(a, b) && glm::dot(there.direction, here.normal) < 0;
     const vec3 step = beside - here.from;
     // The rays of either point slide along themselves onto the plane.
@@ -204,7 +204,7 @@ class Triangles {
   }
 
   /// @param power  that meets the point's part
-  static void account(vec3 power, const Landing& landing, Layer layer, LightBalance& balance) {
+  static void account(vec3 power, const LightLanding& landing, Layer layer, LightBalance& balance) {
     const double in = static_cast<double>(landing.covered * landing.transmittance) * sum(power);
     balance.entered += in;
     if (landing.state == LandingState::trapped)
@@ -222,7 +222,7 @@ class Triangles {
 
   const VirtualScreen& screen_;
   const LightSource& light_;
-  const Image<Landing>& landings_;
+  const Image<LightLanding>& landings_;
   const View& view_;
   bool balanced_;
   Image<Vertex> vertices_;
@@ -244,7 +244,7 @@ void LightBalance::add(const LightBalance& other) {
 }
 
 TrianglesOfView caustics_triangles(const VirtualScreen& screen, const LightSource& light,
-                                   const Image<Landing>& landings, const View& view, const SceneMap& solids,
+                                   const Image<LightLanding>& landings, const View& view, const SceneMap& solids,
                                    LightBalance* balance) {
   const Triangles triangles(screen, light, landings, view, solids, balance != nullptr);
   const int rows = std::max(0, screen.height - 1);

@@ -33,7 +33,7 @@ struct TrianglesOfView {
 
 /// @param solids  what the view sees
 TrianglesOfView caustics_triangles(const VirtualScreen& screen, const LightSource& light,
-                                   const Image<Landing>& landings, const View& view, const SceneMap& solids,
+                                   const Image<LightLanding>& landings, const View& view, const SceneMap& solids,
                                    LightBalance* balance = nullptr);
 
 /// Least cosine between a receiver's normal and the direction against the view at which light is drawn there.

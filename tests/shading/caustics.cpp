@@ -267,7 +267,7 @@ TEST(WavyWater, CastsWhatPhotonsCast) {
 }
 
 TEST(CausticIntensity, HasEveryFactorOfThePaper) {
-  Landing landing;
+  LightLanding landing;
   landing.cos_i = 0.8f;
   landing.transmittance = 0.9f;
   landing.path = 2;

@@ -105,7 +105,7 @@ TEST(BallOfWater, BendsLightTwiceAsASphereDoes) {
   const double n = static_cast<double>(tests::clear().ior), above = 0.45;
   const LightCast light = cast(BallOverPool(above, 0), floor_at(0), tests::clear());
   std::size_t followed = 0;
-  for (const Landing& landing : light.landings) {
+  for (const LightLanding& landing : light.landings) {
     if (landing.state != LandingState::landed) continue;
     const vec2 from{landing.from.x, landing.from.z}, to{landing.point.x, landing.point.z};
     const double h = static_cast<double>(glm::length(from));
@@ -127,7 +127,7 @@ TEST(BallOfWater, FocusesAtItsBackFocalDistance) {
   const auto widest = [&](double distance) {
     const LightCast light = cast(BallOverPool(distance, 0), floor_at(0), tests::clear());
     double result = 0;
-    for (const Landing& landing : light.landings)
+    for (const LightLanding& landing : light.landings)
       if (landing.state == LandingState::landed &&
           glm::length(vec2{landing.from.x, landing.from.z}) < 0.15f * static_cast<float>(kRadius))
         result = std::max(result, static_cast<double>(glm::length(vec2{landing.point.x, landing.point.z})));
@@ -180,7 +180,7 @@ TEST(DropOverThePool, ThrowsNoFalseShadow) {
   // Behind the drop the floor is brighter than beside it, and the light came out and in again.
   const float beside = both.maps.at(0).irradiance({0.7f, 0, 0.7f}, kUp).x;
   EXPECT_GT(both.maps.at(0).irradiance({0, 0, 0}, kUp).x, 2 * beside);
-  const Landing& axis = both.landings(both.landings.width() / 2, both.landings.height() / 2);
+  const LightLanding& axis = both.landings(both.landings.width() / 2, both.landings.height() / 2);
   EXPECT_EQ(axis.way, 1 * 4 + 3);
   EXPECT_NEAR(axis.path, 2 * kRadius + 0.1, 5e-3);
 }
@@ -197,7 +197,7 @@ TEST(DropOverThePool, CastsTheSameBitsForAnyNumberOfThreads) {
 
 TEST(DropOverThePool, IsPartOfThePoolWithASingleInterface) {
   const LightCast single = cast(BallOverPool(0.9, 0.4), floor_at(0), tests::clear(), true);
-  for (const Landing& landing : single.landings) {
+  for (const LightLanding& landing : single.landings) {
     EXPECT_EQ(landing.way, 0);
     EXPECT_EQ(landing.later, 1.0f);
   }
