@@ -277,19 +277,35 @@ struct Impact {
 struct Droplet {
   vec3 start{0.0f};     ///< m
   vec3 velocity{0.0f};  ///< m/s, at its start
-  float radius = 0;     ///< m
-  float drag = 0;       ///< 1/s, F / m of eq. 1
+  float radius = 0;     ///< m; 0: a pile of a crown, which falls back whole
+  float drag = 0;       ///< 1/s, F / (m V) at its start: F / m of eq. 1
   float leaves = 0;     ///< s after the impact: before, it is the tip of a pile
-  float lands = 0;      ///< s after the impact: back at the height of the ground
+  float lands = 0;      ///< s after the impact: back on the plane of what was hit, or given up (most_time)
+};
+
+/// A splash as it goes on.
+struct Splash {
+  Impact impact;  ///< with a unit normal
+  SplashKind kind = SplashKind::none;
+  std::size_t first = 0, count = 0;  ///< of the droplets; by the time when they land; crown_cone: the cone's drop first
+  float circle = 0;                  ///< m, radius of the initial circle; of the disk
+  float width = 0;                   ///< m, half a diagonal of a pile's base
+  float cone_starts = 0;             ///< s after the impact
+  float ends = 0;                    ///< s after the impact
+  float fastest = 0;                 ///< m/s, of any droplet on any part of its orbit, no less
+  float reach = 0;                   ///< m from the point, of any of its pieces at any time, no less
 };
 
 /// A piece of a splash or of the rain, as it is drawn.
 struct WaterPiece {
   enum class Kind : std::uint8_t {
-    pyramid,  ///< quadrangular: `from` the middle of its base, `to` its tip, `across` half a diagonal of the base
-    sphere,   ///< `from` its centre, `radius`
-    disk,     ///< `from` its centre, `across` its unit normal, `radius`
-    streak,   ///< a drop that goes from `from` to `to` while the shutter is open, `radius`
+    /// Quadrangular: `from` the middle of its base, `to` its tip, `across` half a diagonal of its square base; the
+    /// other
+    /// half is the cross product of the unit vector from `from` to `to` and `across`.
+    pyramid,
+    sphere,  ///< `from` its centre, `radius`
+    disk,    ///< `from` its centre, `across` its unit normal, `radius`
+    streak,  ///< a drop that goes from `from` to `to` while the shutter is open, `radius`
   } kind = Kind::sphere;
   vec3 from{0.0f}, to{0.0f}, across{0.0f};  ///< m
   float radius = 0;                         ///< m
@@ -301,8 +317,8 @@ struct SplashOptions {
   vec3 gravity{0, -9.81f, 0};   ///< m/s^2
   float growth_time = 0.03f;    ///< s after which a pile lets its droplet go
   float growth_length = 0.02f;  ///< m from its start after which it does, whichever comes first
-  float most_time = 2;          ///< s after which a splash is over in any case
-  bool secondary = false;       ///< droplets that land on water splash themselves, once
+  float most_time = 2;          ///< s after which a splash is over in any case, >= 0.1; so long a disk stays
+  bool secondary = false;       ///< droplets that land on water splash themselves, once: the caller adds their impacts
   std::uint64_t seed = 1;
 };
 
@@ -324,30 +340,25 @@ class Splashes {
   /// Nothing where splash_kind() is none.
   /// @return m^3 that fly away from the place; they come down again as landings
   double add(const Impact& impact);
-  /// What comes down after `from` and not after `until`, in order of time. Landings are dropped with their splash.
+  /// What comes down after `from` and not after `until`, in order of time. Landings are dropped with their splash: ask
+  /// up to a time before you retire it. What has not come down after most_time, because it was blown or fell from a
+  /// wall, is handed back where it is then.
   std::vector<Landing> landings(double from, double until) const;
   /// Forgets splashes that are over at `time`.
   void retire(double time);
-  std::size_t size() const;
-  std::size_t droplets() const;
-  /// The pieces at `time`, in the order of the impacts.
-  /// @param view  splashes that are smaller than a pixel of it become one piece of the same light; those out of it are
-  ///              left out; null: all, whole
+  std::size_t size() const { return splashes_.size(); }
+  std::size_t droplets() const { return flying_; }
+  /// The pieces at `time`, in the order in which the impacts were added.
+  /// @param view    splashes that are smaller than a pixel of it become one sphere that covers as much of it; those out
+  ///                of it are left out; null: all, whole
+  /// @param pieces  they are put behind what is there
   void pieces(double time, const View* view, std::vector<WaterPiece>& pieces) const;
 
  private:
-  struct Splash {
-    Impact impact;
-    SplashKind kind = SplashKind::none;
-    std::size_t first = 0, count = 0;  ///< of droplets_
-    float circle = 0;                  ///< m, radius of the initial circle; of the disk
-    float cone_starts = 0;             ///< s after the impact
-    float ends = 0;                    ///< s after the impact
-    float reach = 0;                   ///< m from the point, of any of its pieces at any time
-  };
   SplashOptions options_;
   std::vector<Splash> splashes_;
   std::vector<Droplet> droplets_;
+  std::size_t flying_ = 0;  ///< droplets of splashes_; droplets_ holds those of forgotten ones for a while as well
 };
 
 // --- Rain ------------------------------------------------------------------------------------------------------
@@ -356,6 +367,7 @@ struct WindOptions {
   vec3 velocity{0.0f};    ///< m/s, the mean
   float gust = 0;         ///< m/s, standard deviation of the speed along the mean (half of it across)
   float gust_period = 4;  ///< s, of the slowest gusts
+  Axis up = Axis::y;      ///< gusts go along the two others
   std::uint64_t seed = 1;
   /// Points with the attribute "velocity", m/s, instead of `velocity`; between them interpolated, beyond them held.
   std::shared_ptr<const Particles> field;
@@ -368,10 +380,19 @@ class Wind {
   explicit Wind(const WindOptions& options);
   vec3 at(vec3 point, double time) const;  ///< m/s
   bool still() const;                      ///< the same everywhere at all times
+  bool uniform() const;                    ///< the same everywhere: without a field
+  /// m that uniform wind carries what it carries from one time to another, either way round.
+  glm::dvec3 carried(double from, double until) const;
+  float gust_acceleration() const;  ///< m/s^2, the most that gusts can have
+  float finest() const;             ///< m over which a field changes; infinity without one
+
  private:
   struct Parts;
   std::shared_ptr<const Parts> parts_;
 };
+
+/// How fast a drop of this diameter, m, falls in still air at sea level, m/s; >= 0.               [GunnKinzer1949]
+float fall_speed(float diameter);
 
 struct RainOptions {
   float rate_mm_h = 10;      ///< > 0: mm of water an hour
@@ -383,7 +404,7 @@ struct RainOptions {
   float top = 8;                                              ///< m above `level` from which on drops are followed
   double start = 0;                                           ///< s
   double duration = std::numeric_limits<double>::infinity();  ///< s
-  WindOptions wind;
+  WindOptions wind;                                           ///< its `up` is that of the rain
   /// Part of the drops that is made; each of them brings the water of 1 / share. 0: as much as most_per_second allows.
   float share = 0;
   double most_per_second = 200000;
@@ -426,9 +447,11 @@ class Rain {
   const Wind& wind() const { return wind_; }
 
  private:
+  struct Parts;
   RainOptions options_;
   Wind wind_;
   float share_ = 1;
+  std::shared_ptr<const Parts> parts_;
 };
 
 // --- Ripples ---------------------------------------------------------------------------------------------------
@@ -443,7 +466,8 @@ struct RippleOptions {
   float strength = 1;               ///< factor of what a hit does
 };
 
-/// Small waves on thin water: u_tt = div(c^2 grad u) - 2 damping u_t on points over water, mirrored at its shores.
+/// Small waves on thin water: u_tt = div(c^2 grad u) - 2 damping u_t - damping^2 u on points over water, mirrored at its
+/// shores, let out at the border of the grid.
 class Ripples {
  public:
   /// @throws Error invalid_argument; limit_exceeded: more than 2^26 points
@@ -462,12 +486,19 @@ class Ripples {
   /// m/s, of rings on water of this depth.
   float speed(float depth) const;
   double energy() const;  ///< m^4/s^2: potential and kinetic together, per rho; only falls without hits
+  double inner_step() const { return step_; }  ///< s, that advance() goes by; 0: there is no water
 
  private:
+  void step();
   RippleOptions options_;
   int width_ = 0, height_ = 0;
   std::vector<float> depths_, speeds2_, now_, before_;
-  double left_ = 0;  ///< s not yet advanced
+  std::vector<float> faces_a_, faces_b_;  ///< (c step / points)^2 between points and those before them along a, b
+  std::vector<float> keeps_;              ///< part of a step's change that the point's damping lets through
+  std::vector<std::uint8_t> wet_tiles_, moving_tiles_;
+  float fastest_ = 0;  ///< m/s
+  double step_ = 0;    ///< s of an inner step; 0: no water
+  double left_ = 0;    ///< s not yet advanced
 };
 
 }  // namespace meniscus
