@@ -157,14 +157,14 @@ class Simulation {
 
 // --- Ground in the rain [Mizukami2013] -----------------------------------------------------------------------
 
-enum class GroundMaterial { concrete, asphalt, steel };
+enum class GroundMaterial : std::uint8_t { concrete, asphalt, steel };
 /// @throws Error invalid_argument
 GroundMaterial ground_material_of(std::string_view name);
 std::string_view name_of(GroundMaterial material);
 
 /// How much water is on a place, as the splashes are chosen by it.                       [Mizukami2013] table 1
 enum class Wetness {
-  dry,          ///< it still soaks up water; steel: nothing on it
+  dry,          ///< it still soaks up water; steel: drops stand apart on it, less than 0.02 mm
   wet,          ///< saturated, less than 3 mm of water on it
   puddle_3mm,   ///< 3 mm and more
   puddle_5mm,   ///< 5 mm and more
@@ -179,10 +179,15 @@ struct GroundOptions {
   float cell = 0.02f;          ///< m, edge of a cell, > 0
   float level = 0;             ///< m along up, of cells of height 0
   GroundMaterial material = GroundMaterial::asphalt;
-  /// Stretched over the region, the nearest pixel counts; the first row is the far end of b. Empty: `material`.
+  /// Stretched over low .. high, pixel beside pixel; the nearest counts. The first row is the far end of b. Empty:
+  /// `material`.
   Image<GroundMaterial> materials;
-  Image<float> heights;  ///< m above `level`, stretched over the region, bilinear; first row as above; may be empty
-  float roughness = -1;  ///< m, standard deviation of noise on the heights; negative: that of each material
+  /// m above `level`, stretched alike: a pixel's height is that of its middle, bilinear between, constant beyond the
+  /// outermost middles. May be empty.
+  Image<float> heights;
+  /// m, standard deviation of noise on the heights; negative: that of each material, concrete 0.3 mm, asphalt 1 mm,
+  /// steel 0.02 mm.
+  float roughness = -1;
   float roughness_length = 0.1f;  ///< m, of the largest bumps of that noise
   std::uint64_t seed = 1;         ///< of the noise
 };
@@ -196,6 +201,9 @@ struct WaterBudget {
 };
 
 /// Which cells are how wet, and how water goes from one to the next.                     [Mizukami2013] 3.1.2, 4.6.1
+///
+/// A cell's water stands at the level H = bed + depth. Concrete soaks up 0.5 mm, asphalt 0.8 mm, steel nothing; what
+/// comes to a cell soaks in first. docs/rain.md says more.
 class WetGround {
  public:
   /// @throws Error  invalid_argument: an option outside its range; limit_exceeded: more than 2^26 cells
@@ -214,24 +222,48 @@ class WetGround {
   double soaked(std::size_t cell) const { return soaked_[cell]; }  ///< m of water in it
   double capacity(std::size_t cell) const;                         ///< m that it can soak up
   Wetness wetness(std::size_t cell) const;
-  /// Water of one hit, m^3: soaks in, then is shared with the four neighbours; over the border it is drained.
-  ///                                                                                    [Mizukami2013] 4.6.1, fig. 7
+  /// Water of one hit: soaks in; what is left, w m on one cell, is shared with the four neighbours by their levels
+  /// before the hit.                                                                  [Mizukami2013] 4.6.1, fig. 7
+  ///
+  /// Of k neighbours that are lower than the cell, each gets w / k and the cell nothing, if the cell stands higher than
+  /// all of them then would: H_0 > max(H_n) + w / k. Else the water fills the cell and its neighbours from the lowest
+  /// up to one level, and those above it get nothing; five equal levels make fifths. With two neighbours these are the
+  /// rules of fig. 7 b and a. Over the border lies ground as high as the cell's own, from which water is drained.
+  /// @param volume  m^3, finite, >= 0
+  /// @throws Error  invalid_argument
   void add(std::size_t cell, double volume);
-  /// Water on all cells alike, m; soaks in first. Does not flow yet.
+  /// Water on all cells alike, m, finite, >= 0; soaks in first. Does not flow yet.
+  /// @throws Error invalid_argument
   void rain(double depth);
-  /// Water runs to lower neighbours for this long, s, as a sheet on rough ground does; a film stays.
+  /// Water runs to lower neighbours for this long, s, as a sheet on rough ground does [Bates2010]; a film of 0.2 mm
+  /// stays. In steps that are short enough for the deepest water that moves; where nothing moves costs next to nothing.
+  /// After an hour, if it still moves, it is settled.
+  /// @param seconds  finite, >= 0
+  /// @throws Error   invalid_argument
   void flow(double seconds);
-  /// Where water comes to rest: hollows filled level, the rest over the border.          [Barnes2020]
+  /// Where water comes to rest: hollows filled level, the rest over the border; a film stays.  [Barnes2020]
   void settle();
   WaterBudget budget() const;
 
  private:
+  /// Lets a cell soak up what it can of `depth` m and returns the rest.
+  double soak(std::size_t cell, double depth);
+  void share(std::size_t cell, double depth);
+  void stir(std::size_t cell);
+  void stir_all();
+  double flow_step(double left);
+
   GroundOptions options_;
   int width_ = 0, height_ = 0;
   std::vector<float> bed_;
   std::vector<GroundMaterial> material_;
   std::vector<double> depth_, soaked_;
   double fallen_ = 0, drained_ = 0;
+  // Of the flow: m^2/s through the sides of the cells, (width + 1) x height and width x (height + 1); the part of it
+  // that the water of a cell can give; by tiles of cells: whether water has moved since, the deepest water, m.
+  std::vector<double> along_a_, along_b_, part_;
+  std::vector<std::uint8_t> stirred_;
+  std::vector<double> deepest_;
 };
 
 // --- Splashes [Mizukami2013] ---------------------------------------------------------------------------------
@@ -299,9 +331,8 @@ struct Splash {
 /// A piece of a splash or of the rain, as it is drawn.
 struct WaterPiece {
   enum class Kind : std::uint8_t {
-    /// Quadrangular: `from` the middle of its base, `to` its tip, `across` half a diagonal of its square base; the
-    /// other
-    /// half is the cross product of the unit vector from `from` to `to` and `across`.
+    /// Quadrangular: `from` the middle of its square base, `to` its tip, `across` half a diagonal of the base; half the
+    /// other one is the cross product of the unit vector from `from` to `to` and `across`.
     pyramid,
     sphere,  ///< `from` its centre, `radius`
     disk,    ///< `from` its centre, `across` its unit normal, `radius`
