@@ -30,7 +30,7 @@ struct EnvironmentOptions {
 class Environment {
  public:
   /// @throws Error not_found, malformed_file, unsupported, limit_exceeded for the .hdr;
-  ///               invalid_argument: a direction without length, a negative scale
+  ///               invalid_argument: a direction without length, a negative scale, a cover outside [0, 1]
   explicit Environment(const EnvironmentOptions& options);
   /// Linear radiance that arrives from `direction` (unit, away from the eye), without the sun's disc.
   vec3 radiance(vec3 direction) const;
@@ -88,9 +88,11 @@ class GroundCover {
  public:
   virtual ~GroundCover() = default;
   /// Changes what rays have met on the ground plane and on covered solids: albedo, coat, normal.
-  /// @param points  of the hits, world space
-  /// @param widths  of the beams there, m; lists of one length
-  virtual void cover(std::span<const vec3> points, std::span<const float> widths, std::span<SolidHit> hits) const = 0;
+  /// @param points      of the hits, world space
+  /// @param directions  of the rays, unit, towards the hits
+  /// @param widths      of the beams there, m, across the rays; lists of one length
+  virtual void cover(std::span<const vec3> points, std::span<const vec3> directions, std::span<const float> widths,
+                     std::span<SolidHit> hits) const = 0;
 };
 
 /// A ray with a width: `width` m at its origin, growing by `spread` m per metre of its length.
@@ -184,7 +186,8 @@ struct SolidHit {
   vec3 albedo{0.0f};                                        ///< linear, textures and tiles averaged over the beam
   float roughness = 1;
   float ior = 1.5f;
-  float presence = 1;  ///< less than 1 where the ground fades into the horizon
+  float presence = 1;    ///< less than 1 where the ground fades into the horizon
+  bool covered = false;  ///< it is ground: the scene's ground cover lies on it
 
   bool found() const { return distance < std::numeric_limits<float>::infinity(); }
 };

@@ -41,8 +41,9 @@ struct Environment::Parts {
   vec3 sun_direction{0, 1, 0};
   vec3 sun_irradiance{0.0f};
   bool sun_visible = true;
+  float scale = 1;  ///< of all radiances
 
-  vec3 sharp_at(vec3 local) const { return map.empty() ? sharp.at(local) : map.at(local); }
+  vec3 sharp_at(vec3 local) const { return scale * (map.empty() ? sharp.at(local) : map.at(local)); }
 };
 
 Environment::Environment(const EnvironmentOptions& options) {
@@ -50,6 +51,10 @@ Environment::Environment(const EnvironmentOptions& options) {
     throw Error(ErrorCode::invalid_argument, "a direction of the environment has no length");
   if (!(options.sun_radiance_scale >= 0) || !std::isfinite(options.sun_radiance_scale))
     throw Error(ErrorCode::invalid_argument, "the scale of the sun's radiance is negative or not finite");
+  if (!(options.radiance_scale >= 0) || !std::isfinite(options.radiance_scale))
+    throw Error(ErrorCode::invalid_argument, "the scale of the environment's radiance is negative or not finite");
+  if (!(options.cloud_cover >= 0 && options.cloud_cover <= 1))
+    throw Error(ErrorCode::invalid_argument, "the cloud cover is not in [0, 1]");
   auto parts = std::make_shared<Parts>();
   parts->frame = up_frame(options.up);
   parts->sun_direction = glm::normalize(options.sun_direction);
@@ -57,7 +62,7 @@ Environment::Environment(const EnvironmentOptions& options) {
   const vec3 local_sun = parts->frame.local(parts->sun_direction);
 
   if (options.hdr_path.empty()) {
-    const Sky sky(local_sun);
+    const Sky sky(local_sun, options.cloud_cover);
     parts->sharp = DirectionMap(kSharpCells, [&](vec3 direction) { return sky.radiance(direction); });
     parts->sun_irradiance = sky.sun_irradiance();
   } else {
@@ -66,7 +71,8 @@ Environment::Environment(const EnvironmentOptions& options) {
     if (sun.found) parts->sun_direction = parts->frame.world(sun.direction);
     parts->sun_irradiance = sun.irradiance;
   }
-  parts->sun_irradiance *= options.sun_radiance_scale;
+  parts->sun_irradiance *= options.sun_radiance_scale * options.radiance_scale;
+  parts->scale = options.radiance_scale;
 
   // Each level from the one before it: the variances of Gaussians add up.
   DirectionMap source =
@@ -90,11 +96,13 @@ vec3 Environment::radiance(vec3 direction, float roughness) const {
   if (!(level > 1e-3f)) return parts_->sharp_at(local);
   const auto upper = std::min(static_cast<std::size_t>(level), kLevels.size() - 1);
   const float t = level - static_cast<float>(upper);
-  const vec3 low = upper == 0 ? parts_->sharp_at(local) : parts_->levels[upper - 1].at(local);
-  return glm::mix(low, parts_->levels[upper].at(local), t);
+  const vec3 low = upper == 0 ? parts_->sharp_at(local) : parts_->scale * parts_->levels[upper - 1].at(local);
+  return glm::mix(low, parts_->scale * parts_->levels[upper].at(local), t);
 }
 
-vec3 Environment::irradiance(vec3 normal) const { return parts_->irradiance.at(parts_->frame.local(normal)); }
+vec3 Environment::irradiance(vec3 normal) const {
+  return parts_->scale * parts_->irradiance.at(parts_->frame.local(normal));
+}
 
 vec3 Environment::sun_direction() const { return parts_->sun_direction; }
 vec3 Environment::sun_irradiance() const { return parts_->sun_irradiance; }

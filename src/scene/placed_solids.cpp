@@ -96,8 +96,8 @@ PlacedSolids::PlacedSolids(std::vector<PlacedSolid> placed) : scene_(make_embree
     box_.parts.push_back(part);
     const glm::mat3 linear(p.world_from_solid);
     auto texture = p.material ? solid->texture_of(p.material->texture) : nullptr;
-    places_.push_back(
-        {std::move(solid), linear, glm::transpose(glm::inverse(linear)), std::move(p.material), std::move(texture)});
+    places_.push_back({std::move(solid), linear, glm::transpose(glm::inverse(linear)), std::move(p.material),
+                       std::move(texture), p.covered});
   }
   rtcCommitScene(scene_.get());
   check_embree();
@@ -175,6 +175,7 @@ SolidHit PlacedSolids::described(const Ray& ray, Beam beam, float distance, std:
 
   SolidHit hit;
   hit.distance = distance;
+  hit.covered = placed.covered;
   vec3 across = glm::cross(side_u, side_v);
   const float twice_area = glm::length(across);
   hit.face_normal = twice_area > 0 ? across / twice_area : -ray.direction;

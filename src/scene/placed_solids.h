@@ -38,6 +38,7 @@ class PlacedSolids {
     glm::mat3 normals;  ///< its inverse transpose
     std::optional<SolidMaterial> material;
     std::shared_ptr<const Texture> texture;  ///< of `material`
+    bool covered;
   };
   SolidHit described(const Ray& ray, Beam beam, float distance, std::size_t place, std::size_t triangle, float u,
                      float v) const;

@@ -62,6 +62,12 @@ void Scene::set_lamps(std::vector<PointLight> lamps) {
   parts_ = std::move(changed);
 }
 
+void Scene::set_ground_cover(std::shared_ptr<const GroundCover> cover) {
+  auto changed = std::make_shared<Parts>(*parts_);
+  changed->cover = std::move(cover);
+  parts_ = std::move(changed);
+}
+
 const Environment& Scene::environment() const { return parts_->environment; }
 const Ground& Scene::ground() const { return parts_->ground; }
 const Tank& Scene::tank() const { return parts_->tank; }

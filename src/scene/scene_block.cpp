@@ -50,6 +50,32 @@ void Scene::Parts::meet(const RayBlock& rays, Beam beam, bool distances_only, Bl
   static const SolidsBox none;
   plane_hits(planes, solids ? solids->box() : none, rays, beam, distances_only ? 0.0f : kTie, !distances_only, hits);
   if (solids) solids->hits(rays, beam, !distances_only, hits);
+  if (cover && !distances_only) cover_hits(rays, beam, hits);
+}
+
+void Scene::Parts::cover_hits(const RayBlock& rays, Beam beam, BlockHits& hits) const {
+  int lanes[RayBlock::kRays];
+  vec3 points[RayBlock::kRays], directions[RayBlock::kRays];
+  float widths[RayBlock::kRays];
+  SolidHit covered[RayBlock::kRays];
+  std::size_t count = 0;
+  for (int lane = 0; lane < rays.count; ++lane) {
+    const int face = hits.face[lane];
+    if (face != kGroundFace && !(face == kSolidFace && hits.solids[lane].covered)) continue;
+    lanes[count] = lane;
+    points[count] = rays.point(lane, hits.distance[lane]);
+    directions[count] = rays.direction_of(lane);
+    widths[count] = beam.width + beam.spread * hits.distance[lane];
+    covered[count++] = hit_of(hits, lane);
+  }
+  if (count == 0) return;
+  cover->cover({points, count}, {directions, count}, {widths, count}, {covered, count});
+  for (std::size_t k = 0; k < count; ++k) {
+    const int lane = lanes[k];
+    hits.face[lane] = kSolidFace;
+    hits.solids[lane] = covered[k];
+    for (int c = 0; c < 3; ++c) hits.albedo[c][lane] = covered[k].albedo[c];
+  }
 }
 
 vec3 Scene::Parts::normal_of(int face) const {
@@ -68,6 +94,7 @@ SolidHit Scene::Parts::hit_of(const BlockHits& hits, int lane) const {
   hit.normal = hit.face_normal = normal_of(face);
   hit.albedo = {hits.albedo[0][lane], hits.albedo[1][lane], hits.albedo[2][lane]};
   hit.presence = hits.presence[lane];
+  hit.covered = face == kGroundFace;
   if (face != kGroundFace && body->tank().style == TankStyle::glass) {
     hit.roughness = TankBody::kEdgeRoughness;
     hit.ior = TankBody::kGlass;
@@ -93,6 +120,8 @@ void Scene::Parts::shade(const RayBlock& rays, Beam beam, const BlockHits& hits,
     const bool coated = face == kSolidFace ? hits.solids[lane].roughness < 1.0f : bars && face != kGroundFace;
     if (coated) {
       radiance[lane] = lit(hit_of(hits, lane), rays.ray(lane), beam);
+      if (hits.presence[lane] < 1.0f)
+        radiance[lane] = glm::mix(environment.radiance(rays.direction_of(lane)), radiance[lane], hits.presence[lane]);
       continue;
     }
     const vec3 place = rays.point(lane, hits.distance[lane]);

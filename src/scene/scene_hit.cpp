@@ -49,6 +49,7 @@ SolidHit Scene::Parts::ground_hit(const Ray& ray, float distance, Beam beam, flo
   hit.distance = distance;
   hit.normal = hit.face_normal = ground.up;
   hit.presence = presence;
+  hit.covered = true;
   hit.albedo = ground.albedo;
   if (ground.square > 0) {
     const float width = beam.width + beam.spread * distance;
@@ -87,7 +88,14 @@ SolidHit Scene::Parts::hit(const Ray& ray, Beam beam, float from, float limit) c
     const SolidHit hit = solids->hit(ray, beam, from, std::min(limit, nearest.distance));
     if (hit.found()) nearest = hit;
   }
+  if (cover && nearest.covered) cover_hit(ray, beam, nearest);
   return nearest;
+}
+
+void Scene::Parts::cover_hit(const Ray& ray, Beam beam, SolidHit& hit) const {
+  const vec3 point = ray.origin + hit.distance * ray.direction;
+  const float width = beam.width + beam.spread * hit.distance;
+  cover->cover({&point, 1}, {&ray.direction, 1}, {&width, 1}, {&hit, 1});
 }
 
 float Scene::distance(const Ray& ray, float from) const {

@@ -21,6 +21,8 @@ constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
 /// Half of the width of the sun's disc, radians.
 constexpr float kSunRadius = 0.00465f;
 constexpr float kBrightestGlare = 200.0f;
+/// Radiance of a lamp's mirror image below which nobody asks what stands before the lamp.
+constexpr float kFaintestGlare = 1e-6f;
 
 /// Points of the unit disc, the first four on its edge.
 constexpr std::array<vec2, 16> kDisc{{{0.92f, 0.38f},
@@ -116,6 +118,46 @@ vec3 Scene::Parts::lamp_irradiance(vec3 point, vec3 normal, vec3 face_normal, ve
   return sum;
 }
 
+vec3 Scene::Parts::lamp_glare(vec3 point, const SolidHit& hit, vec3 direction, Beam beam) const {
+  const float cos_out = -glm::dot(hit.normal, direction);
+  if (!(cos_out > 0)) return vec3{0.0f};
+  // Variance of the facets' slopes: a cone of mirrored rays is twice as wide as that of the normals. Not less than
+  // what the beam spans and a lamp of a degree.
+  const float sigma = 0.4f * hit.roughness * hit.roughness;
+  const float alpha2 = 2.0f * (sigma * sigma + 0.02f * beam.spread * beam.spread) + 1.5e-5f;
+  const auto smith = [&](float c) { return std::sqrt(alpha2 + (1.0f - alpha2) * c * c); };
+  const float smith_out = smith(cos_out);
+  vec3 sum{0.0f};
+  vec3 fraction{-1.0f};
+  for (const PointLight& lamp : lamps) {
+    const vec3 way = lamp.position - point;
+    const float length2 = glm::dot(way, way);
+    if (!(length2 > 0)) continue;
+    const float length = std::sqrt(length2);
+    const vec3 towards = way / length;
+    const float cos_in = glm::dot(hit.normal, towards);
+    if (!(cos_in > 0) || !(glm::dot(hit.face_normal, towards) > 0)) continue;
+    const vec3 between = towards - direction;
+    const float between_length = glm::length(between);
+    if (!(between_length > 1e-6f)) continue;
+    const vec3 half = between / between_length;
+    const float cos_half = glm::dot(hit.normal, half);
+    // Facets as [Walter2007] eq. 20, 23, 33, 34; the shadowing's denominators cancel.
+    const float d = cos_half * cos_half * (alpha2 - 1.0f) + 1.0f;
+    const float facets = alpha2 * kPerPi / (d * d);
+    const float shadowing = 0.5f / (cos_in * smith_out + cos_out * smith(cos_in));
+    const float reflectance = formulas::fresnel_reflectance(glm::dot(half, towards), hit.ior);
+    vec3 glare = lamp.intensity * (reflectance * facets * shadowing * cos_in / length2);
+    if (std::max({glare.x, glare.y, glare.z}) < kFaintestGlare) continue;
+    const Ray ray{point + clearance(point) * hit.face_normal, towards};
+    if (body) glare *= body->light_transmittance(ray, length);
+    if (solids && solids->blocks(ray, 0, length)) continue;
+    if (fraction.x < 0) fraction = water_light ? water_light->at(point, hit.normal).lamps : vec3{1.0f};
+    sum += fraction * glare;
+  }
+  return glm::min(sum, vec3{kBrightestGlare});
+}
+
 vec3 Scene::irradiance(vec3 point, vec3 normal, vec3 face_normal) const {
   return parts_->irradiance(point, normal, face_normal, 0.0f);
 }
@@ -152,7 +194,9 @@ vec3 Scene::Parts::lit(const SolidHit& hit, const Ray& ray, Beam beam) const {
   }
   // Rough coats lose contrast and with it their mirror image, until none is left.
   const float share = reflectance * (1.0f - hit.roughness);
-  return (1.0f - share) * diffuse + share * image;
+  vec3 light = (1.0f - share) * diffuse + share * image;
+  if (!lamps.empty()) light += (1.0f - hit.roughness) * lamp_glare(point, hit, ray.direction, beam);
+  return light;
 }
 
 vec3 Scene::radiance(const Ray& ray, float footprint) const { return radiance(ray, Beam{0.0f, footprint}); }

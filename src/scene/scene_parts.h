@@ -16,6 +16,7 @@ struct Scene::Parts {
   Tank tank{};
   std::vector<PointLight> lamps{};
   std::shared_ptr<const WaterLight> water_light{};
+  std::shared_ptr<const GroundCover> cover{};    ///< null: none
   std::vector<PlacedSolid> placed{};             ///< as given
   std::shared_ptr<const PlacedSolids> solids{};  ///< null: none
   std::shared_ptr<const TankBody> body{};        ///< of the tank; null: none
@@ -49,12 +50,19 @@ struct Scene::Parts {
   Ray sun_ray(vec3 start, vec3 face_normal, float footprint, std::size_t number) const;
   /// Irradiance from the point lights of which `fraction` passes the water.
   vec3 lamp_irradiance(vec3 point, vec3 normal, vec3 face_normal, vec3 fraction) const;
+  /// Mirror image of the point lights in a coat, seen along a unit direction: its reflectance is in it.
+  vec3 lamp_glare(vec3 point, const SolidHit& hit, vec3 direction, Beam beam) const;
   /// Irradiance from everything; `footprint` m is the width over which shadows' edges are averaged.
   vec3 irradiance(vec3 point, vec3 normal, vec3 face_normal, float footprint) const;
+
+  /// Lays the cover on what was hit, where it is ground.
+  void cover_hit(const Ray& ray, Beam beam, SolidHit& hit) const;
 
   // The same for the rays of a block.
   /// @param distances_only  as in Scene::distance(): without albedos
   void meet(const RayBlock& rays, Beam beam, bool distances_only, BlockHits& hits) const;
+  /// Covered ground is a solid from then on, whose normal and coat are its own.
+  void cover_hits(const RayBlock& rays, Beam beam, BlockHits& hits) const;
   SolidHit hit_of(const BlockHits& hits, int lane) const;
   vec3 normal_of(int face) const;
   /// Radiance along each ray: what is met in its light, or the environment.

@@ -15,6 +15,8 @@ constexpr float kTurbidity = 2.6f;
 /// Radiance of a white ground, and the sun's part of its irradiance while the sun stands high.
 constexpr float kWhiteGround = 1.0f;
 constexpr float kSunPart = 0.62f;
+/// Of the light through clouds; bluish by a trifle, its luminance one.
+constexpr vec3 kCloudColour{0.976f, 1.0f, 1.071f};
 
 float luminance(vec3 rgb) { return glm::dot(rgb, vec3{0.2126f, 0.7152f, 0.0722f}); }
 
@@ -44,7 +46,7 @@ float Sky::Perez::at(float cos_theta, float gamma, float cos_gamma) const {
   return (1.0f + a * std::exp(b / cos_theta)) * (1.0f + c * std::exp(d * gamma) + e * cos_gamma * cos_gamma);
 }
 
-Sky::Sky(vec3 sun) : sun_(sun) {
+Sky::Sky(vec3 sun, float cover) : sun_(sun), cover_(cover) {
   // The model holds for a sun above the horizon.
   const float elevation = std::asin(std::clamp(sun.z, -1.0f, 1.0f));
   const float theta = 0.5f * kPi - std::max(elevation, 0.035f);
@@ -93,7 +95,20 @@ Sky::Sky(vec3 sun) : sun_(sun) {
   }
   // On a surface that faces the sun; with height = 0 both are zero.
   sun_irradiance_ = sun_on_ground / std::max(sun.z, 0.02f);
-  ground_ = (0.3f / kPi) * (scale_ * sky_irradiance + sun_on_ground);
+
+  // Clouds give the ground as much light as the clear sky and its sun. The overcast sky's irradiance is 7 pi / 9 times
+  // the radiance of its zenith.
+  const vec3 overcast_irradiance = total * kCloudColour;
+  overcast_zenith_ = overcast_irradiance * (9.0f / (7.0f * kPi));
+  ground_ = (0.3f / kPi) * glm::mix(scale_ * sky_irradiance + sun_on_ground, overcast_irradiance, cover_);
+  sun_irradiance_ *= 1.0f - cover_;
+}
+
+vec3 Sky::above(vec3 direction) const {
+  if (!(cover_ > 0)) return scale_ * unscaled(direction);
+  // CIE standard overcast sky: L = L_zenith (1 + 2 sin elevation) / 3.                          [CIE2003] type 16
+  const vec3 overcast = overcast_zenith_ * ((1.0f + 2.0f * std::max(direction.z, 0.0f)) / 3.0f);
+  return glm::mix(scale_ * unscaled(direction), overcast, cover_);
 }
 
 vec3 Sky::unscaled(vec3 direction) const {
@@ -109,13 +124,13 @@ vec3 Sky::unscaled(vec3 direction) const {
 }
 
 vec3 Sky::radiance(vec3 direction) const {
-  if (direction.z >= 0) return scale_ * unscaled(direction);
+  if (direction.z >= 0) return above(direction);
   const float down = std::clamp(-direction.z / 0.5f, 0.0f, 1.0f);
   const float blend = down * down * (3.0f - 2.0f * down);
   const float horizontal = std::sqrt(direction.x * direction.x + direction.y * direction.y);
   const vec3 horizon =
       horizontal > 1e-4f ? vec3{direction.x / horizontal, direction.y / horizontal, 0.0f} : vec3{1, 0, 0};
-  return glm::mix(scale_ * unscaled(horizon), ground_, blend);
+  return glm::mix(above(horizon), ground_, blend);
 }
 
 }  // namespace meniscus
