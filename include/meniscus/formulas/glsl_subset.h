@@ -23,6 +23,7 @@
   using glm::dot;               \
   using glm::exp;               \
   using glm::length;            \
+  using glm::log;               \
   using glm::mat3;              \
   using glm::max;               \
   using glm::min;               \

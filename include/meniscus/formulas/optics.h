@@ -62,6 +62,32 @@ FORMULA float schlick_reflectance(float cos_i, float eta) {
   return r_0 + (1.0f - r_0) * d * d * d * d * d;
 }
 
+/// Fraction of light from all directions alike that an interface throws back, from the side of the lower index: the mean
+/// of fresnel_reflectance() weighted by the cosine.                              [Duntley1942], [LeknerDorf1988]
+/// @param eta  > 1
+FORMULA float diffuse_reflectance(float eta) {
+  float n = eta;
+  float n2 = n * n;
+  float n4 = n2 * n2;
+  float plus = n2 + 1.0f;
+  float minus = n2 - 1.0f;
+  return 0.5f + (n - 1.0f) * (3.0f * n + 1.0f) / (6.0f * (n + 1.0f) * (n + 1.0f)) +
+         n2 * minus * minus / (plus * plus * plus) * log((n - 1.0f) / (n + 1.0f)) -
+         2.0f * n2 * n * (n2 + 2.0f * n - 1.0f) / (plus * (n4 - 1.0f)) +
+         8.0f * n4 * (n4 + 1.0f) / (plus * (n4 - 1.0f) * (n4 - 1.0f)) * log(n);
+}
+
+/// Albedo of a rough body under water, of the light that comes out of the water again per light that came into it:
+/// what the body scatters is thrown back to it by the inside of the water's surface, and is absorbed again.
+///   A = (1 - p) a / (1 - p a),   p = 1 - (1 - R) / eta^2,   R = diffuse_reflectance(eta)          [LeknerDorf1988]
+/// The mirror image in the water's surface is not in it. With a = 1 nothing is lost.
+/// @param albedo  of the dry body, [0, 1]
+/// @param eta     > 1, of the water
+FORMULA float wet_albedo(float albedo, float eta) {
+  float kept = 1.0f - (1.0f - diffuse_reflectance(eta)) / (eta * eta);
+  return (1.0f - kept) * albedo / (1.0f - kept * albedo);
+}
+
 /// Mirror direction of `incident` (towards the interface).
 FORMULA vec3 mirrored(vec3 incident, vec3 normal) { return incident - 2.0f * dot(incident, normal) * normal; }
 
