@@ -21,6 +21,9 @@ struct SurfaceBuffers {
   /// Where each pixel's ray may first and last meet water, m along the ray; what refine() starts from. Empty where that
   /// does not need them.
   Image<float> entry, exit;
+  /// Normals as they were before small waves bent them: what refine() starts from instead of `normal`. Empty where
+  /// nothing bent them.
+  Image<vec3> unbent_normal;
 };
 
 /// Where a ray crosses a surface.

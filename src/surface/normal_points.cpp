@@ -8,6 +8,7 @@ namespace meniscus {
 void take_filtered_normals(const View& view, const SurfaceBuffers& coarse, std::span<const vec2> points,
                            float tolerance, SurfaceBuffers& fine) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const Image<vec3>& normals = coarse.unbent_normal.empty() ? coarse.normal : coarse.unbent_normal;
   parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!(fine.depth[i] < kInfinity)) continue;
@@ -20,7 +21,7 @@ void take_filtered_normals(const View& view, const SurfaceBuffers& coarse, std::
           const float depth = coarse.depth(qx, qy);
           if (!(depth < kInfinity)) continue;
           const Ray other = view.ray({static_cast<float>(qx) + 0.5f, static_cast<float>(qy) + 0.5f});
-          const vec3 normal = coarse.normal(qx, qy);
+          const vec3 normal = normals(qx, qy);
           const float off_plane = glm::dot(normal, own - (other.origin + depth * other.direction)) / tolerance;
           const float agreement = glm::dot(normal, fine.normal[i]);
           sum += normal * std::exp(-0.5f * off_plane * off_plane + (agreement - 1.0f) / kNormalSharpness);
