@@ -1,0 +1,200 @@
+// What wet ground looks like.
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "base/field_axes.h"
+#include "meniscus/formulas.h"
+#include "meniscus/shading.h"
+#include "meniscus/sim.h"
+#include "shading/ground_grain.h"
+#include "shading/ground_noise.h"
+
+namespace meniscus {
+namespace {
+
+constexpr float kWaterIor = 1.333f;
+/// Of the film of water once it is full, of dry and of wet steel.
+constexpr float kFilmRoughness = 0.07f, kSteelRoughness = 0.4f, kWetSteelRoughness = 0.16f;
+/// A coat that mirrors as much as dull steel does, straight on.
+constexpr float kSteelIor = 6.0f;
+/// m of water over which a puddle's own surface takes the mirror image from the film.
+constexpr float kPuddleBegins = 0.0008f, kPuddleIsThere = 0.0014f;
+/// m of film that saturated ground shows without any water on it.
+constexpr float kDampFilm = 0.00004f;
+
+float smooth(float t) {
+  t = std::clamp(t, 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+/// The state of a cell, and of a place between cells.
+struct Wet {
+  float saturation = 0;  ///< 0 .. 1
+  float depth = 0;       ///< m of water
+  float material[3]{};   ///< shares, by GroundMaterial
+};
+
+class WetGroundCover final : public GroundCover {
+ public:
+  WetGroundCover(const WetGround& ground, const WetLook& look)
+      : look_(look),
+        axes_(ground.options().up),
+        low_(ground.options().low),
+        cell_(ground.options().cell),
+        width_(ground.width()),
+        height_(ground.height()),
+        cells_(ground.size()) {
+    if (!(look.film_full > 0) || !std::isfinite(look.film_full) || !(look.bumpiness >= 0) ||
+        !std::isfinite(look.bumpiness))
+      throw Error(ErrorCode::invalid_argument, "the film of wet ground is not above zero, or its bumps are below");
+    for (const vec3& albedo : look.albedo)
+      if (!(albedo.x >= 0 && albedo.y >= 0 && albedo.z >= 0 && albedo.x <= 1 && albedo.y <= 1 && albedo.z <= 1))
+        throw Error(ErrorCode::invalid_argument, "an albedo of the ground is not in [0, 1]");
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const double capacity = ground.capacity(i);
+      cells_[i].saturation = capacity > 0 ? static_cast<float>(std::clamp(ground.soaked(i) / capacity, 0.0, 1.0)) : 0;
+      cells_[i].depth = static_cast<float>(std::max(ground.depth(i), 0.0));
+      cells_[i].material[static_cast<std::size_t>(ground.material(i))] = 1;
+    }
+  }
+
+  void cover(std::span<const vec3> points, std::span<const vec3> directions, std::span<const float> widths,
+             std::span<SolidHit> hits) const override {
+    for (std::size_t i = 0; i < hits.size(); ++i) cover_one(points[i], directions[i], widths[i], hits[i]);
+  }
+
+ private:
+  /// Place of a coordinate in cells, on the mirror image beyond the border.
+  static float folded(float x, int count) {
+    if (!std::isfinite(x)) return 0;
+    const float period = 2.0f * static_cast<float>(count);
+    const float t = x - period * std::floor(x / period);
+    return std::min(t, period - t);
+  }
+
+  /// Quadratic B-spline over the nine cells around: round spots, no corners.
+  Wet state(vec2 p) const {
+    const float x = folded((p.x - low_.x) / cell_, width_), y = folded((p.y - low_.y) / cell_, height_);
+    const int i = std::min(static_cast<int>(x), width_ - 1), j = std::min(static_cast<int>(y), height_ - 1);
+    const auto weights = [](float t, float(&w)[3]) {
+      w[0] = 0.5f * (1.0f - t) * (1.0f - t);
+      w[2] = 0.5f * t * t;
+      w[1] = 1.0f - w[0] - w[2];
+    };
+    float wx[3], wy[3];
+    weights(x - static_cast<float>(i), wx);
+    weights(y - static_cast<float>(j), wy);
+    Wet sum;
+    for (int dj = 0; dj < 3; ++dj) {
+      const int row = std::clamp(j + dj - 1, 0, height_ - 1);
+      for (int di = 0; di < 3; ++di) {
+        const int column = std::clamp(i + di - 1, 0, width_ - 1);
+        const Wet& cell =
+            cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column)];
+        const float w = wx[di] * wy[dj];
+        sum.saturation += w * cell.saturation;
+        sum.depth += w * cell.depth;
+        for (int m = 0; m < 3; ++m) sum.material[m] += w * cell.material[m];
+      }
+    }
+    return sum;
+  }
+
+  void cover_one(vec3 point, vec3 direction, float width, SolidHit& hit) const {
+    // The plane of the grain: the one of two axes that the face lies in most.
+    int u = axes_.a, v = axes_.b;
+    const vec3 across = glm::abs(hit.face_normal);
+    if (across[axes_.a] > std::max(across[axes_.up], across[axes_.b])) u = axes_.b, v = axes_.up;
+    if (across[axes_.b] > std::max(across[axes_.up], across[axes_.a])) u = axes_.a, v = axes_.up;
+    const vec2 p{point[u], point[v]};
+    // The beam's print is longer than wide at a slant; as much is lost in between.
+    const float cos_in = std::max(-glm::dot(direction, hit.face_normal), 0.02f);
+    const float print = width / std::sqrt(cos_in);
+
+    // Where it is looked up wavers a little, so that no row of cells shows.
+    vec2 place{point[axes_.a], point[axes_.b]};
+    const float waver = resolved(2.0f * cell_, print);
+    if (waver > 0) {
+      place.x += 0.3f * waver * cell_ * value_noise(place / (1.7f * cell_), look_.seed + 64).value;
+      place.y += 0.3f * waver * cell_ * value_noise(place / (1.3f * cell_), look_.seed + 65).value;
+    }
+    Wet wet = state(place);
+    // Water runs off what is steep.
+    wet.depth *= smooth((glm::dot(hit.face_normal, axes_.place(0, 0, 1)) - 0.5f) / 0.35f);
+
+    vec3 albedo{0.0f};
+    float roughness = 0, ior = 0, hidden = 0;
+    vec2 slope{0.0f};
+    for (int m = 0; m < 3; ++m) {
+      const float share = wet.material[m];
+      if (!(share > 1e-3f)) continue;
+      const auto material = static_cast<GroundMaterial>(m);
+      const Grain grain = material == GroundMaterial::asphalt    ? asphalt_grain(p, print, look_.seed)
+                          : material == GroundMaterial::concrete ? concrete_grain(p, print, look_.seed)
+                                                                 : steel_grain(p, print, look_.seed);
+      const vec3 dry = glm::clamp(look_.albedo[static_cast<std::size_t>(m)] * grain.shade, vec3{0.0f}, vec3{1.0f});
+      // Water stands lower on what stands out.
+      const float film = std::max(wet.depth * (1.0f - 0.5f * grain.relief), 0.0f) + kDampFilm * wet.saturation;
+      const float full = smooth(film / look_.film_full);
+      const float puddle = smooth((wet.depth - kPuddleBegins) / (kPuddleIsThere - kPuddleBegins));
+      const float bumps = look_.bumpiness * (1.0f - 0.93f * full);
+      slope += share * bumps * grain.slope;
+      float own = 1, own_ior = kWaterIor;
+      if (material == GroundMaterial::steel) {
+        albedo += share * (1.0f - 0.25f * full) * dry;
+        own = glm::mix(kSteelRoughness, kWetSteelRoughness, full);
+        own_ior = kSteelIor;
+      } else {
+        albedo += share * glm::mix(dry, wetted(dry), std::max(smooth(wet.saturation), full));
+        own = glm::mix(1.0f, kFilmRoughness, full * (1.0f - puddle));
+      }
+      // Bumps that are not seen widen the mirror image: directions turn by twice the normals' angle.
+      const float cone = 0.8f * own * own;
+      const float wider = std::sqrt(cone * cone + 4.0f * bumps * bumps * grain.hidden_slopes);
+      hidden += share * std::min(1.0f, std::sqrt(wider / 0.8f));
+      roughness += share * own;
+      ior += share * own_ior;
+    }
+    hit.albedo = albedo;
+    hit.roughness = std::max(roughness, hidden);
+    hit.ior = ior;
+    tilt(u, v, slope, direction, hit);
+  }
+
+  static vec3 wetted(vec3 dry) {
+    // wet_albedo() with its share found once.
+    static const float kept = 1.0f - (1.0f - formulas::diffuse_reflectance(kWaterIor)) / (kWaterIor * kWaterIor);
+    return (1.0f - kept) * dry / (1.0f - kept * dry);
+  }
+
+  /// Turns the normal against the slope of bumps along two axes, no farther than that the ray's origin still sees it.
+  static void tilt(int u, int v, vec2 slope, vec3 direction, SolidHit& hit) {
+    if (slope == vec2{0.0f}) return;
+    vec3 along{0.0f};
+    along[u] = slope.x;
+    along[v] = slope.y;
+    along -= glm::dot(along, hit.normal) * hit.normal;
+    vec3 normal = glm::normalize(hit.normal - along);
+    constexpr float kLeast = 1e-3f;
+    const float towards = glm::dot(normal, direction);
+    if (towards > -kLeast) normal = glm::normalize(normal - (towards + kLeast) * direction);
+    hit.normal = normal;
+  }
+
+  WetLook look_;
+  FieldAxes axes_;
+  vec2 low_;
+  float cell_;
+  int width_, height_;
+  std::vector<Wet> cells_;
+};
+
+}  // namespace
+
+std::shared_ptr<const GroundCover> wet_ground_cover(const WetGround& ground, const WetLook& look) {
+  return std::make_shared<WetGroundCover>(ground, look);
+}
+
+}  // namespace meniscus
