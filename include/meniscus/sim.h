@@ -513,23 +513,26 @@ class Ripples {
   /// @param speed  m/s, downwards
   void hit(vec3 point, float diameter, float speed);
   void advance(double seconds);
-  std::span<const float> heights() const { return now_; }  ///< m over the still level
+  /// m over the still level, of each point.
+  std::span<const float> heights() const { return {now_.data() + 1, now_.size() - 2}; }
   /// m/s, of rings on water of this depth.
   float speed(float depth) const;
   double energy() const;  ///< m^4/s^2: potential and kinetic together, per rho; only falls without hits
-  double inner_step() const { return step_; }  ///< s, that advance() goes by; 0: there is no water
+  double inner_step() const { return step_; }  ///< s, that advance() has gone by; 0: there is no water
 
  private:
+  void set_step(double seconds);
   void step();
   RippleOptions options_;
   int width_ = 0, height_ = 0;
-  std::vector<float> depths_, speeds2_, now_, before_;
-  std::vector<float> faces_a_, faces_b_;  ///< (c step / points)^2 between points and those before them along a, b
-  std::vector<float> keeps_;              ///< part of a step's change that the point's damping lets through
+  std::vector<float> depths_;
+  std::vector<float> speeds2_, faces_a_, faces_b_;  ///< m^2/s^2, at points, and between them and those before them
+  std::vector<float> now_, before_;                 ///< m, after one unused; before: one inner step ago
+  std::vector<float> keeps_;                        ///< part of a step's change that damping near the border lets through
   std::vector<std::uint8_t> wet_tiles_, moving_tiles_;
-  float fastest_ = 0;  ///< m/s
-  double step_ = 0;    ///< s of an inner step; 0: no water
-  double left_ = 0;    ///< s not yet advanced
+  double limit_ = 0;  ///< s, that an inner step may last
+  double step_ = 0;   ///< s, of the last inner steps
+  double left_ = 0;   ///< s not yet advanced
 };
 
 }  // namespace meniscus
