@@ -1,0 +1,316 @@
+#include "shading/draw_rain_splats.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "meniscus/formulas/optics.h"
+
+namespace meniscus {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+/// Pieces nearer than this to the eye's plane are not drawn, m.
+constexpr float kNearest = 1e-3f;
+/// Streaks fade out on their way to the eye between these distances, m: a camera's lens would blur them away.
+constexpr float kStreakGone = 0.15f, kStreakWhole = 0.45f;
+/// Balls up to this radius are drawn as dots, px.
+constexpr float kDotRadius = 1.0f;
+/// Piles up to this width of their base are drawn as lines, px.
+constexpr float kLineWidth = 2.0f;
+/// Mean width of a square's shadow over all turns, in half diagonals: its perimeter over pi.
+constexpr float kMeanWidth = 4.0f * std::numbers::sqrt2_v<float> / kPi;
+
+bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// A point of the picture.
+struct Spot {
+  vec2 place;       ///< px
+  float depth;      ///< along forward, m
+  float distance;   ///< along the ray, m
+  vec3 direction;   ///< unit, from the eye
+  float per_metre;  ///< px, across the ray; a little more off the picture's middle, as there pixels see less
+};
+
+class Maker {
+ public:
+  Maker(const View& view, const RainLight& light, const RainLook& look) : view_(view), light_(light), look_(look) {
+    perspective_ = view.projection == Projection::perspective;
+  }
+
+  std::optional<Splat> of(const WaterPiece& piece) const {
+    if (!(piece.opacity > 0) || !finite(piece.from)) return {};
+    switch (piece.kind) {
+      case WaterPiece::Kind::sphere:
+        return sphere(piece);
+      case WaterPiece::Kind::streak:
+        return streak(piece);
+      case WaterPiece::Kind::pyramid:
+        return pyramid(piece);
+      case WaterPiece::Kind::disk:
+        return disk(piece);
+    }
+    return {};
+  }
+
+  /// Pixels that it may touch; none if it is out of the picture.
+  std::optional<TileRange> range(const Splat& splat, const WaterPiece& piece) const {
+    vec2 low{splat.x, splat.y}, high = low;
+    float reach = kRainFilter + 0.5f * std::max(splat.w0, splat.w1);
+    if (splat.kind == Splat::Kind::line) {
+      const vec2 end{splat.x + splat.length * splat.ux, splat.y + splat.length * splat.uy};
+      low = glm::min(low, end);
+      high = glm::max(high, end);
+    } else if (splat.kind == Splat::Kind::pyramid) {
+      // The tip, and the base within half a diagonal.
+      const vec3 tip = view_.project(piece.to);
+      low = glm::min(low - splat.w0, vec2{tip});
+      high = glm::max(high + splat.w0, vec2{tip});
+      reach = kRainFilter;
+    }
+    low -= reach;
+    high += reach;
+    const auto w = static_cast<float>(view_.width), h = static_cast<float>(view_.height);
+    if (!(low.x < w && low.y < h && high.x > 0 && high.y > 0)) return {};
+    const auto tile = [](float x, int size) {
+      return static_cast<std::int16_t>(static_cast<int>(std::clamp(x, 0.0f, static_cast<float>(size - 1))) / kRainTile);
+    };
+    return TileRange{tile(low.x, view_.width), tile(low.y, view_.height), tile(high.x, view_.width),
+                     tile(high.y, view_.height)};
+  }
+
+ private:
+  std::optional<Spot> spot(vec3 point) const {
+    const vec3 p = view_.project(point);
+    if (!(p.z > kNearest) || !std::isfinite(p.x + p.y)) return {};
+    if (!perspective_) return Spot{{p.x, p.y}, p.z, p.z, view_.forward, 1.0f / view_.pixel_size(p.z)};
+    const vec3 way = point - view_.eye;
+    const float distance = glm::length(way);
+    return Spot{{p.x, p.y}, p.z, distance, way / distance, std::sqrt(distance / p.z) / view_.pixel_size(p.z)};
+  }
+
+  static Splat at(const Spot& spot, float opacity) {
+    Splat splat{};
+    splat.x = spot.place.x;
+    splat.y = spot.place.y;
+    splat.t0 = splat.t1 = spot.distance;
+    splat.alpha = std::min(opacity, 1.0f);
+    return splat;
+  }
+
+  /// A square of this area, px^2; at least a pixel wide, so that it goes smoothly from one to the next.
+  static void make_dot(Splat& splat, float area) {
+    splat.kind = Splat::Kind::dot;
+    splat.w0 = splat.w1 = std::max(1.0f, std::sqrt(area));
+    splat.alpha *= area / (splat.w0 * splat.w0);
+  }
+
+  vec3 ball_colour(const Spot& spot, vec3 point) const {
+    vec3 colour = light_.ball(spot.place);
+    if (light_.has_lamps()) colour += light_.lamps(point, spot.direction);
+    return colour;
+  }
+
+  std::optional<Splat> sphere(const WaterPiece& piece) const {
+    if (!(piece.radius > 0)) return {};
+    const std::optional<Spot> centre = spot(piece.from);
+    if (!centre || !(centre->distance > 1.05f * piece.radius)) return {};
+    const float radius = piece.radius * centre->per_metre;
+    if (!std::isfinite(radius)) return {};
+    Splat splat = at(*centre, piece.opacity);
+    splat.soft = piece.radius;
+    splat.colour = ball_colour(*centre, piece.from);
+    if (look_.level_of_detail && radius < kDotRadius) {
+      make_dot(splat, kPi * radius * radius);
+      return splat;
+    }
+    splat.kind = Splat::Kind::ball;
+    // Seen from near, more of the picture is covered than its radius says.
+    const float near = piece.radius / centre->distance;
+    splat.w0 = splat.w1 =
+        2.0f * radius *
+        (perspective_ ? centre->distance / centre->depth / std::sqrt(1.0f - std::min(near * near, 0.95f)) : 1.0f);
+    return splat;
+  }
+
+  std::optional<Splat> streak(const WaterPiece& piece) const {
+    if (!(piece.radius > 0) || !finite(piece.to)) return {};
+    // The part of the way before the eye.
+    vec3 from = piece.from, to = piece.to;
+    const float z0 = glm::dot(from - view_.eye, view_.forward), z1 = glm::dot(to - view_.eye, view_.forward);
+    const float least = perspective_ ? std::max(2.0f * kNearest, piece.radius) : 2.0f * kNearest;
+    if (!(z0 > least) && !(z1 > least)) return {};
+    const vec3 whole_way = to - from;
+    if (z0 < least) from += whole_way * ((least - z0) / (z1 - z0));
+    if (z1 < least) to -= whole_way * ((least - z1) / (z0 - z1));
+    const std::optional<Spot> first = spot(from), last = spot(to);
+    if (!first || !last) return {};
+    float opacity = std::min(piece.opacity, 1.0f);
+    if (perspective_) {
+      // Nearest to the eye on the whole way.
+      const float way2 = glm::dot(whole_way, whole_way);
+      const float s = way2 > 0 ? std::clamp(glm::dot(view_.eye - piece.from, whole_way) / way2, 0.0f, 1.0f) : 0.0f;
+      opacity *= glm::smoothstep(kStreakGone, kStreakWhole, glm::length(piece.from + s * whole_way - view_.eye));
+      if (!(opacity > 0)) return {};
+    }
+    const vec2 way = last->place - first->place;
+    const float length = glm::length(way);
+    const float r0 = piece.radius * first->per_metre, r1 = piece.radius * last->per_metre;
+    const float radius = 0.5f * (r0 + r1);
+    if (!std::isfinite(length) || !std::isfinite(radius)) return {};
+    if (length < 0.5f * radius) {
+      WaterPiece still = piece;
+      still.kind = WaterPiece::Kind::sphere;
+      still.from = 0.5f * (from + to);
+      still.opacity = opacity;
+      return sphere(still);
+    }
+    Splat splat = at(*first, opacity);
+    splat.t1 = last->distance;
+    splat.soft = piece.radius;
+    const Spot middle{0.5f * (first->place + last->place), 0.5f * (first->depth + last->depth),
+                      0.5f * (first->distance + last->distance), glm::normalize(first->direction + last->direction),
+                      0.5f * (first->per_metre + last->per_metre)};
+    splat.colour = ball_colour(middle, 0.5f * (from + to));
+    // The ball's area, spread over its way and the mean length of its chords.
+    const float covered = kPi * radius * radius, stretch = length + 0.5f * kPi * radius;
+    if (stretch < 1.0f && radius < 0.5f) {
+      make_dot(splat, covered);
+      splat.x = middle.place.x;
+      splat.y = middle.place.y;
+      splat.t0 = splat.t1 = middle.distance;
+      return splat;
+    }
+    make_line(splat, way, length, stretch, 2.0f * r0, 2.0f * r1);
+    splat.alpha *= covered / (stretch * 2.0f * radius);
+    splat.round = true;
+    return splat;
+  }
+
+  /// A line from the splat's place on along `way`, longer than it by the same at both ends.
+  static void make_line(Splat& splat, vec2 way, float length, float stretch, float w0, float w1) {
+    splat.kind = Splat::Kind::line;
+    splat.ux = way.x / length;
+    splat.uy = way.y / length;
+    splat.length = stretch;
+    splat.x -= 0.5f * (stretch - length) * splat.ux;
+    splat.y -= 0.5f * (stretch - length) * splat.uy;
+    splat.w0 = w0;
+    splat.w1 = w1;
+  }
+
+  std::optional<Splat> pyramid(const WaterPiece& piece) const {
+    const float half = glm::length(piece.across);
+    if (!(half > 0) || !finite(piece.across) || !finite(piece.to)) return {};
+    const std::optional<Spot> base = spot(piece.from), tip = spot(piece.to);
+    const vec3 axis = piece.to - piece.from;
+    const float height = glm::length(axis);
+    if (!base || !tip || !(height > 0) || !(base->depth > half + kNearest)) return {};
+    Splat splat = at(*base, std::min(piece.opacity, 1.0f) * std::clamp(look_.pile_opacity, 0.0f, 1.0f));
+    splat.t1 = tip->distance;
+    splat.soft = half;
+    const vec2 way = tip->place - base->place;
+    const float length = glm::length(way), width = kMeanWidth * half * base->per_metre;
+    if (!std::isfinite(length) || !std::isfinite(width)) return {};
+    splat.colour = light_.jet(base->place + 0.4f * way, way);
+    if (light_.has_lamps()) splat.colour += light_.lamps(piece.from, base->direction);
+    if (!look_.level_of_detail || width > kLineWidth) {
+      splat.kind = Splat::Kind::pyramid;
+      splat.w0 = splat.w1 = 1.2f * half * base->per_metre * (perspective_ ? base->distance / base->depth : 1.0f);
+      return splat;
+    }
+    // The faces cover the shadow of the sides or that of the base, whichever is larger.
+    const float base_area =
+        2.0f * half * half * base->per_metre * base->per_metre * std::abs(glm::dot(axis, base->direction)) / height;
+    const float area = std::max(0.5f * width * length, base_area);
+    if (length < 1.0f || length < width) {
+      splat.x += way.x / 3.0f;
+      splat.y += way.y / 3.0f;
+      splat.t0 = splat.t1 = splat.t0 + (splat.t1 - splat.t0) / 3.0f;
+      make_dot(splat, area);
+      return splat;
+    }
+    make_line(splat, way, length, length, 2.0f * area / length, 0.0f);
+    return splat;
+  }
+
+  std::optional<Splat> disk(const WaterPiece& piece) const {
+    if (!(piece.radius > 0) || !finite(piece.across) || !(glm::length(piece.across) > 0)) return {};
+    const std::optional<Spot> centre = spot(piece.from);
+    if (!centre || !(centre->depth > piece.radius + kNearest)) return {};
+    const vec3 normal = glm::normalize(piece.across);
+    const float cosine = std::abs(glm::dot(normal, centre->direction));
+    const float major = piece.radius * centre->per_metre, minor = major * cosine;
+    if (!std::isfinite(major)) return {};
+    Splat splat = at(*centre, piece.opacity);
+    // It lies on what is solid, wholly before it.
+    splat.soft = piece.radius;
+    splat.t0 = splat.t1 = std::max(0.0f, centre->distance - piece.radius);
+    if (!look_.level_of_detail || minor > 1.0f) {
+      splat.kind = Splat::Kind::disk;
+      splat.w0 = splat.w1 = 2.0f * major * (perspective_ ? centre->distance / centre->depth : 1.0f) * 1.1f;
+      return splat;
+    }
+    // Mostly its mirror image is seen.
+    const float mirrored = formulas::fresnel_reflectance(cosine, look_.ior);
+    splat.colour = light_.parts().radiance(formulas::mirrored(centre->direction, normal), 0.35f);
+    splat.alpha *= mirrored + 0.15f * (1.0f - mirrored);
+    const float area = kPi * major * minor;
+    if (major < 1.0f) {
+      make_dot(splat, area);
+      return splat;
+    }
+    // Along the line in which the disk meets the plane across the ray.
+    const vec3 along = glm::cross(normal, centre->direction);
+    const vec2 way{glm::dot(along, view_.right), -glm::dot(along, view_.up)};
+    const float size = glm::length(way);
+    if (!(size > 0)) return {};
+    const float length = 0.5f * kPi * major;
+    splat.x -= 0.5f * length * way.x / size;
+    splat.y -= 0.5f * length * way.y / size;
+    make_line(splat, way, size, size, area / length, area / length);
+    splat.length = length;
+    return splat;
+  }
+
+  const View& view_;
+  const RainLight& light_;
+  const RainLook& look_;
+  bool perspective_ = true;
+};
+
+}  // namespace
+
+Splats make_splats(const View& view, std::span<const WaterPiece> pieces, const RainLight& light, const RainLook& look) {
+  const std::size_t runs = (pieces.size() + Splats::kRun - 1) / Splats::kRun;
+  Splats all{std::make_unique_for_overwrite<Splat[]>(runs * Splats::kRun),
+             std::make_unique_for_overwrite<TileRange[]>(runs * Splats::kRun), std::vector<std::size_t>(runs), false};
+  std::atomic<bool> looks_behind{false};
+  const Maker maker(view, light, look);
+  parallel_for(runs, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t run = begin; run < end; ++run) {
+      std::size_t next = run * Splats::kRun;
+      bool behind = false;
+      for (std::size_t i = run * Splats::kRun; i < std::min(pieces.size(), (run + 1) * Splats::kRun); ++i) {
+        std::optional<Splat> splat = maker.of(pieces[i]);
+        if (!splat || !(splat->alpha > 0)) continue;
+        const std::optional<TileRange> range = maker.range(*splat, pieces[i]);
+        if (!range) continue;
+        splat->piece = static_cast<std::uint32_t>(i);
+        behind = behind || splat->kind >= Splat::Kind::ball;
+        all.splats[next] = *splat;
+        all.ranges[next] = *range;
+        ++next;
+      }
+      all.counts[run] = next - run * Splats::kRun;
+      if (behind) looks_behind = true;
+    }
+  });
+  all.looks_behind = looks_behind;
+  return all;
+}
+
+}  // namespace meniscus
