@@ -102,10 +102,20 @@ class Rising {
     const std::uint32_t to = down_.to[c];
     if (to != kNone && to != c) leaf_of_[c] = leaf_of_[to];
 
+    // What spills here goes to the lowest neighbour first: hollows meet in the order of their depths beside the cell.
+    for (std::size_t t = 1; t < count; ++t)
+      for (std::size_t k = t; k > 0 && lower(touched[k].lowest, touched[k - 1].lowest); --k)
+        std::swap(touched[k], touched[k - 1]);
+
     if (land) {
-      const std::uint32_t spill = near.at_border ? kNone : leaf_of_[land_lowest];
-      for (std::size_t t = 0; t < count; ++t) {
-        close(touched[t].node, level, spill);
+      if (near.at_border && land_lowest != kNone && !(ground_[land_lowest] < level)) land_lowest = kNone;
+      std::size_t first = 1;  // those before the land meet as one hollow
+      for (; first < count && lower(touched[first].lowest, land_lowest); ++first)
+        touched[0] = merge(touched[0], touched[first], level);
+      const bool before_land = count > 0 && lower(touched[0].lowest, land_lowest);
+      for (std::size_t t = 0; t < count; t = t == 0 ? first : t + 1) {
+        const std::uint32_t to_cell = t > 0 && before_land ? touched[0].lowest : land_lowest;
+        close(touched[t].node, level, to_cell == kNone ? kNone : leaf_of_[to_cell]);
         top_[touched[t].node] = kNone;
         tree_.roots.push_back(touched[t].node);
       }

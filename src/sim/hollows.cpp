@@ -115,6 +115,7 @@ class Filling {
   void raise(std::uint32_t n, double depth, std::span<double> water) {
     if (!(depth > 0)) return;
     const HollowTree::Node& node = tree_.nodes[n];
+    if (node.own_begin == node.own_end) return fill_to_the_brim(n);  // three that meet in one saddle
     HollowTree::Filled filled;
     if (node.within[0] != kNone) {
       filled = tree_.nodes[node.within[0]].filled;

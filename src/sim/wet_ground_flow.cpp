@@ -42,14 +42,17 @@ Friction friction_between(GroundMaterial a, GroundMaterial b) {
 /// Flow after a step of dt, m^2/s, positive from the first to the second.
 /// @param rise  m, level of the first over that of the second
 /// @param deep  m, of water over the higher bed of the two
-double flow_after(double q, double rise, double deep, const Friction& friction, double dt, double cell) {
+/// @param over  dt by the cell's edge, s/m
+double flow_after(double q, double rise, double deep, const Friction& friction, double dt, double over) {
   const double flowing = deep - kHeldFilm;
   if (flowing < kStillDepth) return 0;
   if (std::abs(rise) < kStillLevel && std::abs(q) < kStillFlow) return 0;
-  const double drag = friction.laminar / (deep * deep) + friction.turbulent * std::abs(q) / (flowing * deep);
-  const double next = (q + kGravity * flowing * dt * rise / cell) / (1 + dt * drag);
-  const double fastest = flowing * std::sqrt(kGravity * deep);
-  return std::clamp(next, -fastest, fastest);
+  // (q + g h_f dt S) / (1 + dt drag), multiplied by h^2 h_f above and below: one division.
+  const double thick = deep * deep * flowing;
+  const double slowed = thick + dt * (friction.laminar * flowing + friction.turbulent * std::abs(q) * deep);
+  const double next = (q + kGravity * flowing * rise * over) * thick / slowed;
+  const double fastest2 = flowing * flowing * (kGravity * deep);
+  return next * next > fastest2 ? std::copysign(std::sqrt(fastest2), next) : next;
 }
 
 }  // namespace
@@ -131,10 +134,10 @@ double WetGround::flow_step(double left) {
     const double rise = step + (depth_[a] - depth_[b]);
     const double deep = std::max(depth_[a] + std::min(step, 0.0), depth_[b] - std::max(step, 0.0));
     if (q == 0 && deep < kHeldFilm) return 0.0;  // most of a wet street
-    return flow_after(q, rise, deep, friction_between(material_[a], material_[b]), dt, cell);
+    return flow_after(q, rise, deep, friction_between(material_[a], material_[b]), dt, over);
   };
   const auto outwards = [&](double q, std::size_t c) {  // the level outside is that of the cell's own ground
-    return flow_after(q, depth_[c], depth_[c], friction_between(material_[c], material_[c]), dt, cell);
+    return flow_after(q, depth_[c], depth_[c], friction_between(material_[c], material_[c]), dt, over);
   };
   each_tile([&](std::size_t, std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1) {
     for (std::size_t j = j0; j < j1; ++j) {

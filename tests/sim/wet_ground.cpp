@@ -167,7 +167,7 @@ TEST(WetGround, GoesFromDryToTenMillimetresInSteadyRain) {
     std::vector<std::pair<Wetness, double>> changes{{ground.wetness(middle), 0.0}};
     for (int k = 0; k < 1'200; ++k) {
       ground.rain(1e-5);
-      ground.flow(1);
+      ground.flow(0.1);
       if (ground.wetness(middle) != changes.back().first)
         changes.emplace_back(ground.wetness(middle), ground.depth(middle));
     }
