@@ -21,6 +21,8 @@ constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
 /// Half of the width of the sun's disc, radians.
 constexpr float kSunRadius = 0.00465f;
 constexpr float kBrightestGlare = 200.0f;
+/// Radians: coats whose mirror images are blurred by less show bodies sharp.
+constexpr float kSharpCoat = 0.008f;
 /// Radiance of a lamp's mirror image below which nobody asks what stands before the lamp.
 constexpr float kFaintestGlare = 1e-6f;
 
@@ -172,19 +174,35 @@ vec3 Scene::Parts::lit(const SolidHit& hit, const Ray& ray, Beam beam) const {
 
   // A clear coat: its mirror image of what surrounds the solid, which shows no coats itself, and of the sun.
   const float reflectance = formulas::fresnel_reflectance(-glm::dot(hit.normal, ray.direction), hit.ior);
-  vec3 direction = formulas::mirrored(ray.direction, hit.normal);
-  const float under = glm::dot(direction, hit.face_normal);
-  if (under < 0.01f) direction = glm::normalize(direction + (0.01f - under) * hit.face_normal);
-  const Ray mirror{point + clearance(point) * hit.face_normal, direction};
   const float sigma = 0.8f * hit.roughness * hit.roughness;
+  const auto mirrored = [&](vec3 normal) {
+    const vec3 direction = formulas::mirrored(ray.direction, normal);
+    const float under = glm::dot(direction, hit.face_normal);
+    return under < 0.01f ? glm::normalize(direction + (0.01f - under) * hit.face_normal) : direction;
+  };
+  const vec3 start = point + clearance(point) * hit.face_normal;
   const Beam widened{width, beam.spread + 2.0f * sigma};
-  const SolidHit seen = this->hit(mirror, widened, 0, kInfinity);
-  vec3 image{0.0f};
-  if (seen.presence < 1.0f || !seen.found()) image = environment.radiance(direction, hit.roughness);
-  if (seen.found()) {
-    const vec3 shown = seen.albedo * kPerPi *
-                       irradiance(mirror.origin + seen.distance * direction, seen.normal, seen.face_normal, width);
-    image = glm::mix(image, shown, seen.presence);
+  const auto shown_along = [&](vec3 along) {
+    const SolidHit seen = this->hit({start, along}, widened, 0, kInfinity);
+    vec3 shown{0.0f};
+    if (seen.presence < 1.0f || !seen.found()) shown = environment.radiance(along, hit.roughness);
+    if (!seen.found()) return shown;
+    const vec3 there = start + seen.distance * along;
+    const vec3 body_light = seen.albedo * kPerPi * irradiance(there, seen.normal, seen.face_normal, width);
+    return glm::mix(shown, body_light, seen.presence);
+  };
+  const vec3 direction = mirrored(hit.normal);
+  vec3 image = shown_along(direction);
+  // The sky is blurred as it is; edges of bodies are by facets that lean to the eye and away from it, as these draw a
+  // mirror image longest on ground seen at a slant. Weights and places of a Gaussian's mean [Abramowitz1964] 25.4.46
+  if (sigma > kSharpCoat && (solids || body)) {
+    const vec3 slant = ray.direction - glm::dot(ray.direction, hit.normal) * hit.normal;
+    const float length = glm::length(slant);
+    if (length > 1e-3f) {
+      const vec3 lean = (0.5f * 1.7320508f * std::min(sigma, 0.3f) / length) * slant;
+      image = (2.0f / 3.0f) * image + (1.0f / 6.0f) * (shown_along(mirrored(glm::normalize(hit.normal + lean))) +
+                                                       shown_along(mirrored(glm::normalize(hit.normal - lean))));
+    }
   }
   vec3 glare = environment.sun_glare(direction, sigma * sigma);
   if (glare != vec3{0.0f}) {
