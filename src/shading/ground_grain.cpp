@@ -15,6 +15,7 @@ struct Octave {
   float height;  ///< m, of its bumps
 };
 
+/// One octave; `p` with swapped axes is for octaves without bumps.
 void add(const Octave& octave, vec2 p, float width, std::uint64_t seed, Grain& grain) {
   const float part = resolved(octave.length, width);
   const float steep = octave.height / octave.length;
@@ -37,6 +38,8 @@ void add_mottling(vec2 p, float width, std::uint64_t seed, float strength, Grain
 Grain asphalt_grain(vec2 p, float width, std::uint64_t seed) {
   Grain grain;
   add_mottling(p, width, seed, 0.22f, grain);
+  add({0.043f, 0.13f, 0.0006f}, p, width, seed + 7, grain);
+  add({0.019f, 0.12f, 0.0003f}, p, width, seed + 8, grain);
   // Stones in dark binder: the nearest centre among those of the cells around, each with its own radius.
   constexpr float kPitch = 0.0085f, kMeanCover = 0.44f, kStone = 0.62f, kHeight = 0.0011f, kSlopes = 0.028f;
   const float part = resolved(kPitch, width);
@@ -67,7 +70,7 @@ Grain asphalt_grain(vec2 p, float width, std::uint64_t seed) {
     grain.relief = part * (2.0f * stone * (1.0f - 0.5f * best * stone) - 1.0f);
   }
   add({0.0022f, 0.12f, 0.00022f}, p, width, seed + 5, grain);
-  add({0.0009f, 0.10f, 0.00008f}, {p.y, p.x}, width, seed + 6, grain);
+  add({0.0009f, 0.10f, 0.00008f}, p, width, seed + 6, grain);
   return grain;
 }
 
@@ -79,7 +82,7 @@ Grain concrete_grain(vec2 p, float width, std::uint64_t seed) {
   if (boards > 0) grain.shade += boards * 0.04f * value_noise({p.x / 2.5f, p.y / 0.12f}, seed + 20).value;
   add({0.028f, 0.04f, 0.0004f}, p, width, seed + 21, grain);
   add({0.006f, 0.04f, 0.00025f}, p, width, seed + 22, grain);
-  add({0.0016f, 0.07f, 0.00012f}, {p.y, p.x}, width, seed + 23, grain);
+  add({0.0016f, 0.07f, 0.00012f}, p, width, seed + 23, grain);
   // Pores: a few small dark holes.
   constexpr float kPitch = 0.013f, kMean = 0.004f;
   const float part = resolved(0.5f * kPitch, width);

@@ -120,9 +120,19 @@ class WetGroundCover final : public GroundCover {
       place.x += 0.3f * waver * cell_ * value_noise(place / (1.7f * cell_), look_.seed + 64).value;
       place.y += 0.3f * waver * cell_ * value_noise(place / (1.3f * cell_), look_.seed + 65).value;
     }
+    // A steep face belongs to the ground that stands behind it.
+    const vec3 inwards = -hit.face_normal;
+    place += 1.5f * cell_ * vec2{inwards[axes_.a], inwards[axes_.b]};
     Wet wet = state(place);
     // Water runs off what is steep.
     wet.depth *= smooth((glm::dot(hit.face_normal, axes_.place(0, 0, 1)) - 0.5f) / 0.35f);
+
+    // Films are not even: ground is not flat below a cell either.
+    float unevenness = 1;
+    if (wet.depth > 0)
+      for (const float length : {0.07f, 0.31f})
+        if (const float part = resolved(length, print); part > 0)
+          unevenness += 0.33f * part * value_noise(place / length, look_.seed + 66).value;
 
     vec3 albedo{0.0f};
     float roughness = 0, ior = 0, hidden = 0;
@@ -136,10 +146,11 @@ class WetGroundCover final : public GroundCover {
                                                                  : steel_grain(p, print, look_.seed);
       const vec3 dry = glm::clamp(look_.albedo[static_cast<std::size_t>(m)] * grain.shade, vec3{0.0f}, vec3{1.0f});
       // Water stands lower on what stands out.
-      const float film = std::max(wet.depth * (1.0f - 0.5f * grain.relief), 0.0f) + kDampFilm * wet.saturation;
+      const float film =
+          std::max(wet.depth * (1.0f - 0.5f * grain.relief) * unevenness, 0.0f) + kDampFilm * wet.saturation;
       const float full = smooth(film / look_.film_full);
       const float puddle = smooth((wet.depth - kPuddleBegins) / (kPuddleIsThere - kPuddleBegins));
-      const float bumps = look_.bumpiness * (1.0f - 0.93f * full);
+      const float bumps = look_.bumpiness * (1.0f - 0.88f * full);
       slope += share * bumps * grain.slope;
       float own = 1, own_ior = kWaterIor;
       if (material == GroundMaterial::steel) {
