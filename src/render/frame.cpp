@@ -6,23 +6,12 @@
 #include "meniscus/render.h"
 #include "particles/chosen.h"
 #include "render/antialias.h"
+#include "render/rainy_frame.h"
 #include "render/show.h"
 #include "render/water_surface.h"
 
 namespace meniscus {
 namespace {
-
-/// The solids without the water.
-Scene dry_scene(const FrameSettings& settings, StageTimes* times) {
-  Scene scene(settings.environment, settings.ground);
-  if (!settings.solids.empty() || settings.tank.style != TankStyle::none) {
-    const StageTimer timer(times, "scene");
-    scene.set_tank(settings.tank);
-    scene.set_solids(settings.solids);
-  }
-  scene.set_lamps(settings.lamps);
-  return scene;
-}
 
 /// What the water does to the light on the solids.
 void light(Scene& scene, const Surface& surface, const FrameSettings& settings, StageTimes* times) {
@@ -56,7 +45,51 @@ void draw_colour_bar(FramePicture& frame, const ColourBy& colour) {
               [&](float t) { return colormap_at(colour.colormap, t); });
 }
 
+/// The particles that are drawn where they are not all of them: stray ones are drops, or nobody's.
+/// @param far_away  how many are left out because they are
+std::optional<Particles> kept_of(const Particles& all, const FrameSettings& settings, const RaycastOptions& surface,
+                                 std::size_t& far_away, StageTimes* times) {
+  std::optional<Particles> kept;
+  if (settings.drop_isolated > 0) {
+    const StageTimer timer(times, "particles");
+    const float reach = surface.smoothing_length > 0 ? surface.smoothing_length : 2 * surface.spacing;
+    kept = without_isolated(all, reach, settings.drop_isolated);
+  }
+  if (std::optional<Particles> near = without_far(kept ? *kept : all, settings)) {
+    far_away = (kept ? *kept : all).size() - near->size();
+    kept = std::move(near);
+  }
+  return kept;
+}
+
 }  // namespace
+
+DryScene dry_scene(const FrameSettings& settings, StageTimes* times) {
+  DryScene dry{Scene(settings.environment, settings.ground), Scene(settings.environment, settings.ground)};
+  if (!settings.solids.empty() || settings.tank.style != TankStyle::none) {
+    const StageTimer timer(times, "scene");
+    dry.bodies.set_tank(settings.tank);
+    dry.bodies.set_solids(settings.solids);
+  }
+  dry.bodies.set_lamps(settings.lamps);
+  dry.scene = dry.bodies;
+  const std::shared_ptr<const Solid> relief = settings.rain ? settings.rain->relief() : nullptr;
+  if (relief) {
+    const StageTimer timer(times, "scene");
+    std::vector<PlacedSolid> solids = settings.solids;
+    solids.push_back({relief, glm::mat4(1.0f), std::nullopt, true});
+    dry.scene.set_solids(std::move(solids));
+  }
+  return dry;
+}
+
+void rain_through(const Particles& all, const FrameSettings& settings) {
+  DryScene dry = dry_scene(settings, nullptr);
+  std::size_t far_away = 0;
+  const std::optional<Particles> kept = kept_of(all, settings, settings.surface, far_away, nullptr);
+  const WaterSurface water = water_surface(kept ? *kept : all, settings, settings.surface, dry.bodies, {}, nullptr);
+  settings.rain->advance(settings.time, dry.bodies, water.surface.get());
+}
 
 Antialias antialias_of(std::string_view name) {
   if (name == "off") return Antialias::off;
@@ -86,18 +119,7 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
   RaycastOptions surface_options = settings.surface;
   if (full) surface_options.filter_radius *= 2;  // the same width in the picture
 
-  // Stray particles are drops, or nobody's.
-  std::optional<Particles> kept;
-  if (settings.drop_isolated > 0) {
-    const StageTimer timer(times, "particles");
-    const float reach =
-        surface_options.smoothing_length > 0 ? surface_options.smoothing_length : 2 * surface_options.spacing;
-    kept = without_isolated(all, reach, settings.drop_isolated);
-  }
-  if (std::optional<Particles> near = without_far(kept ? *kept : all, settings)) {
-    frame.far_away = (kept ? *kept : all).size() - near->size();
-    kept = std::move(near);
-  }
+  const std::optional<Particles> kept = kept_of(all, settings, surface_options, frame.far_away, times);
   const Particles& particles = kept ? *kept : all;
   frame.particles = particles.size();
 
@@ -109,13 +131,16 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
   }
 
   // The surface, and what of it is seen.
-  Scene scene = dry_scene(settings, times);
-  const WaterSurface water = water_surface(particles, settings, surface_options, scene, colours, times);
+  DryScene dry = dry_scene(settings, times);
+  Scene& scene = dry.scene;
+  WaterSurface water = water_surface(particles, settings, surface_options, dry.bodies, colours, times);
+  const Surface* deep = water.surface.get();  // puddles throw no caustics
+  if (settings.rain) rain_on(settings, dry, water.surface, times);
   const Surface* surface = water.surface.get();
   frame.buffers = surface->see(view, {}, times);
 
   // Light.
-  light(scene, *surface, settings, times);
+  light(scene, *deep, settings, times);
   OpticsInputs optics{settings.optics, nullptr, surface, nullptr};
   if (!surface->can_march() && optics.options.refraction == RefractionMethod::ray_traced)
     optics.options.refraction = RefractionMethod::thickness;
@@ -143,7 +168,10 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
     const std::vector<std::uint32_t> pixels =
         silhouette_pixels(view, frame.buffers, scene, surface_options.spacing, edges_of_solids ? &*behind : nullptr);
     refine_pixels(*surface, view, scene, settings.material, optics, pixels, frame.buffers, frame.radiance);
-  } else if (full) {
+  }
+  if (settings.rain && settings.show == Show::water)
+    draw_rain_over(settings, view, scene, frame.buffers, behind ? &*behind : nullptr, frame.radiance, times);
+  if (full) {
     const StageTimer timer(times, "antialias");
     frame.radiance = downsampled(frame.radiance, 2);
     frame.buffers = halved(frame.buffers);

@@ -25,6 +25,7 @@ const Section& file_section() {
         "true",
         "Light bent by the water",
         [](const JsonValue& v, Draft& d) { d.scene.picture.caustics = !v.is_boolean() || v.boolean(); }},
+       {"rain", {an_object(rain_section())}, "(none)", "Rain over all of it", nullptr},
        {"picture", {an_object(picture_section())}, "{}", "Size, tone, and what is shown", nullptr},
        {"output", {an_object(output_section())}, "{}", "Where pictures go", nullptr}},
       nullptr,

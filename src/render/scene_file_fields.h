@@ -121,6 +121,8 @@ const Section& camera_section();
 const Section& optics_section();
 const Section& eyes_section();
 const Section& caustics_section();
+const Section& rain_section();
+const Section& rain_ground_section();
 const Section& picture_section();
 const Section& output_section();
 

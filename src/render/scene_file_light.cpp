@@ -78,7 +78,17 @@ const Section& environment_section() {
         {{Kind::file}},
         "(an analytic sky)",
         "Environment map, equirectangular Radiance .hdr",
-        [](const JsonValue& v, Draft& d) { picture(d).environment_hdr = d.resolved(v.text()); }}}};
+        [](const JsonValue& v, Draft& d) { picture(d).environment_hdr = d.resolved(v.text()); }},
+       {"clouds",
+        {a_number(between(0, 1))},
+        "(0; in the rain 1)",
+        "Of the analytic sky: 0 clear, 1 overcast without a sun",
+        [](const JsonValue& v, Draft& d) { picture(d).cloud_cover = v.real(); }},
+       {"scale",
+        {a_number(between(0, 1e6))},
+        "1",
+        "Factor of the sky's light, the sun's included: little of it at night",
+        [](const JsonValue& v, Draft& d) { picture(d).sky_scale = v.real(); }}}};
   return section;
 }
 

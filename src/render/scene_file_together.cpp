@@ -115,6 +115,36 @@ void finish_heights(const JsonValue& water, Draft& draft) {
   }
 }
 
+bool has_water(const SceneFile& scene) {
+  return !scene.frames.empty() || scene.waves || scene.simulation || scene.heights;
+}
+
+/// Where the rain's ground is, and what it is made from.
+void finish_rain(const JsonValue& value, const Draft& draft) {
+  const SceneFile& scene = draft.scene;
+  if (has_water(scene))
+    for (const char* field : {"frames", "fps"})
+      if (value.has(field)) value.refuse_key(field, "is of rain without water", "leave it out: the water has frames");
+  if (!value.has("ground")) {
+    if (!has_water(scene) && scene.picture.bodies.empty() && !value.has("region"))
+      value.refuse("has nothing to fall on", "ground, meshes, water or a region", "none of them");
+    return;
+  }
+  const JsonValue ground = value.member("ground");
+  if (!ground.has("region") && !ground.has("mesh") && !has_water(scene))
+    ground.refuse("has no region", "region: [[a, b], [a, b]], two opposite corners, or a mesh", "neither");
+  if (!ground.has("mesh")) return;
+  std::vector<std::string> names;
+  for (const BodyOptions& body : scene.picture.bodies)
+    if (!body.name.empty()) names.push_back(body.name);
+  const JsonValue name = ground.member("mesh");
+  if (std::find(names.begin(), names.end(), name.text()) != names.end()) return;
+  const std::string nearest = nearest_name(name.text(), names);
+  name.refuse("is the name of no mesh",
+              names.empty() ? std::string("a mesh with a name") : fmt::format("{}", fmt::join(names, ", ")),
+              name.dump(), nearest.empty() ? "" : "did you mean " + nearest + "?");
+}
+
 }  // namespace
 
 void finish_file(const JsonValue& value, Draft& draft) {
@@ -126,9 +156,12 @@ void finish_file(const JsonValue& value, Draft& draft) {
                                               "leave it out, or simulate the water that it stands in");
   if (scene.simulation) finish_simulation(value.member("water").member("simulation"), draft);
   if (scene.heights) finish_heights(value.member("water"), draft);
+  if (scene.picture.rain) finish_rain(value.member("rain"), draft);
   // A film runs as fast as its water, unless it is told to run otherwise.
   const bool said = value.has("output") && value.member("output").has("fps");
   if (!said && scene.simulation) scene.video.frames_per_second = scene.simulation->frames_per_second;
+  if (!said && scene.picture.rain && !has_water(scene))
+    scene.video.frames_per_second = scene.picture.rain->frames_per_second;
   if (!said && scene.heights) scene.video.frames_per_second = scene.heights->frames_per_second;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "meniscus/render.h"
+#include "render/rainy_frame.h"
 
 namespace meniscus {
 namespace {
@@ -70,6 +71,7 @@ class SequenceRun {
                      FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame) {
     check(target_, shots.size());
     if (target_.is_film() && finished(target_.path())) return all_skipped(shots, on_frame);
+    leave_out_ground();
     bodies_.emplace(picture_.bodies);
     check_bodies(shots);
     settings_ = settings_of(survey_, picture_);
@@ -88,6 +90,13 @@ class SequenceRun {
   }
 
  private:
+  /// A body that is the rain's ground is drawn as that.
+  void leave_out_ground() {
+    if (!picture_.rain || !picture_.rain->ground.there || picture_.rain->ground.mesh.empty()) return;
+    for (BodyOptions& body : picture_.bodies)
+      if (body.name == picture_.rain->ground.mesh) body.absent = {true};
+  }
+
   /// Where the bodies of the first frame are, and that there are any at all.
   void check_bodies(const std::vector<Shot>& shots) {
     std::size_t most = 0;
@@ -134,15 +143,20 @@ class SequenceRun {
     FrameReport report;
     report.path = shot.frame.path;
     report.output = target_.path_of(shot.number);
-    if (!target_.is_film() && finished(report.output)) {
+    const bool there = !target_.is_film() && finished(report.output);
+    if (there) {
       report.skipped = true;
-      return report;
+      if (!settings_->rain) return report;
     }
     try {
-      draw(shot, index, count, report);
+      if (there)
+        rain_through(*frame_of(shot, index, count, report), *settings_);
+      else
+        draw(shot, index, count, report);
     } catch (const Error& error) {
       // A picture that cannot be written will not be followed by one that can, nor is a setting better for the next.
       if (options_.strict || writing_ || count == 1 || error.code() == ErrorCode::invalid_argument) throw;
+      if (there) return report;
       if (!first_error_) first_error_ = std::current_exception();
       report.problem = error.what();
       if (film_) film_->add(last_picture_);
@@ -151,7 +165,9 @@ class SequenceRun {
     return report;
   }
 
-  void draw(const Shot& shot, std::size_t index, std::size_t count, FrameReport& report) {
+  /// The particles of a shot; the settings become those of its picture.
+  std::shared_ptr<const Particles> frame_of(const Shot& shot, std::size_t index, std::size_t count,
+                                            FrameReport& report) {
     std::shared_ptr<const Particles> particles = survey_.only_frame;
     if (!particles) {
       const StageTimer timer(&report.times, sequence_.body_transforms ? "simulate" : "read");
@@ -162,15 +178,24 @@ class SequenceRun {
           fmt::format("{} particles with NaN or infinite positions are left out", particles->dropped_non_finite));
     report.notes.insert(report.notes.end(), particles->notes.begin(), particles->notes.end());
     settings_->view = view_of(survey_, picture_, index, count, options_.video.frames_per_second);
-    if (target_.format() == PictureFormat::ply) {
-      write_surfels(report, *particles);
-      return;
-    }
+    // Made frames know their time; files may count theirs from anywhere.
+    const double in_film = static_cast<double>(shot.place) / options_.video.frames_per_second;
+    settings_->time = sequence_.foreseen ? particles->time.value_or(in_film) : in_film;
+    if (target_.format() == PictureFormat::ply) return particles;
     std::vector<std::optional<glm::mat4>> moved;
     if (sequence_.body_transforms) moved = sequence_.body_transforms();
     const std::size_t notes = report.notes.size();
     settings_->solids = bodies_->at(shot.place, shot.number, report.notes, moved);
     if (options_.strict && report.notes.size() > notes) throw Error(ErrorCode::not_found, report.notes.back());
+    return particles;
+  }
+
+  void draw(const Shot& shot, std::size_t index, std::size_t count, FrameReport& report) {
+    const std::shared_ptr<const Particles> particles = frame_of(shot, index, count, report);
+    if (target_.format() == PictureFormat::ply) {
+      write_surfels(report, *particles);
+      return;
+    }
     FramePicture frame = render_frame(*particles, *settings_);
     report.particles = frame.particles;
     if (frame.far_away > 0)

@@ -5,6 +5,7 @@
 
 #include "meniscus/render.h"
 #include "render/guessed.h"
+#include "render/rain_settings.h"
 
 namespace meniscus {
 namespace {
@@ -78,7 +79,8 @@ Ground ground_of(const Survey& survey, const PictureOptions& options) {
     ground.albedo = *options.ground_albedo;
     ground.second_albedo = 0.7f * ground.albedo;
   }
-  ground.square = options.ground == GroundStyle::chequer ? round_length(size / 8) : 0.0f;
+  const bool plain = options.ground != GroundStyle::chequer || has_rain_ground(options);
+  ground.square = plain ? 0.0f : round_length(size / 8);
   ground.centre = centre + up * (ground.height - glm::dot(centre, up));
   ground.fade_radius = 12 * std::max(size, solids);
   return ground;
@@ -123,8 +125,9 @@ SurfaceMethod surface_method_of(std::string_view name) {
   if (name == "surfels") return SurfaceMethod::surfels;
   if (name == "height_field") return SurfaceMethod::height_field;
   if (name == "spheres") return SurfaceMethod::spheres;
-  throw Error(ErrorCode::invalid_argument,
-              {"there is no such surface", "raycast, surfels, height_field or spheres", std::string(name), {}, {}, {}, {}});
+  throw Error(
+      ErrorCode::invalid_argument,
+      {"there is no such surface", "raycast, surfels, height_field or spheres", std::string(name), {}, {}, {}, {}});
 }
 
 GroundStyle ground_style_of(std::string_view name) {
@@ -152,6 +155,8 @@ FrameSettings settings_of(const Survey& survey, const PictureOptions& options) {
   const vec2 sun = sun_deg(survey, options);
   environment.sun_direction = direction_towards(survey.up.axis, sun.x, sun.y);
   environment.sun_radiance_scale = options.sun_scale;
+  environment.cloud_cover = options.cloud_cover.value_or(options.rain ? 1.0f : 0.0f);
+  environment.radiance_scale = options.sky_scale;
   settings.environment = Environment(environment);
   settings.ground = ground_of(survey, options);
   settings.tank = tank_of(survey, options);
@@ -168,6 +173,11 @@ FrameSettings settings_of(const Survey& survey, const PictureOptions& options) {
   settings.antialias = options.antialias;
   settings.legend = options.legend;
   settings.drop_isolated = options.drop_isolated;
+  settings.rain = rain_of(survey, options);
+  if (has_rain_ground(options)) {
+    const float plane = plane_under(*settings.rain);
+    settings.ground.height = options.ground_height ? std::min(*options.ground_height, plane) : plane;
+  }
   return settings;
 }
 
