@@ -24,6 +24,7 @@ constexpr float kWidest = 0.3f;                                            ///< 
 constexpr float kCrownLowest = 50, kCrownHighest = 80, kCrownAngle = 65, kCrownAngleSigma = 5;  ///< degrees
 constexpr float kCrownSpeed = 0.08f;       ///< of the crown's tips, over the drop's speed against the surface
 constexpr float kCrownSpeedSigma = 0.08f;  ///< over the mean
+constexpr float kCrownPart = 0.25f;        ///< of the longest time of a splash, that a crown may take
 constexpr float kCrownTip = 0.125f;        ///< radius of what the air brakes at a crown's tip
 constexpr float kJitter = 0.25f;           ///< standard deviation of the azimuth, over the angle between two piles
 constexpr float kJitterMost = 0.35f;       ///< rad
@@ -67,13 +68,11 @@ Droplet pile(const Impact& impact, const Frame& frame, float circle, double azim
 }
 
 /// Fills in how the droplet flies.
-/// @param radius  m, of what the air brakes
-void fly(Droplet& droplet, float radius, vec3 wind, vec3 normal, const SplashOptions& options, bool lets_go) {
+/// @param radius     m, of what the air brakes
+/// @param most_time  s after its start when it is given up
+void fly(Droplet& droplet, float radius, vec3 wind, vec3 normal, vec3 gravity, float most_time) {
   droplet.drag = air_drag(glm::length(droplet.velocity - wind), 2 * radius);
-  const Orbit orbit{droplet.velocity, wind, options.gravity, droplet.drag};
-  droplet.lands = landing_time(orbit, normal, options.most_time - kLandFade);
-  droplet.leaves = lets_go ? leaving_time(orbit, options.growth_length, std::min(options.growth_time, droplet.lands))
-                           : droplet.lands;
+  droplet.lands = landing_time({droplet.velocity, wind, gravity, droplet.drag}, normal, most_time);
 }
 
 void scatter(Splash& splash, const SplashOptions& options, Draws& draws, std::vector<Droplet>& droplets) {
@@ -99,7 +98,10 @@ void scatter(Splash& splash, const SplashOptions& options, Draws& draws, std::ve
   const auto begin = droplets.end() - number;
   for (int i = 0; i < number; ++i) {
     begin[i].radius = radius_of(flying * volumes[static_cast<std::size_t>(i)] / sum);
-    fly(begin[i], begin[i].radius, impact.wind, impact.normal, options, true);
+    fly(begin[i], begin[i].radius, impact.wind, impact.normal, options.gravity, options.most_time - kLandFade);
+    begin[i].leaves =
+        leaving_time({begin[i].velocity, impact.wind, options.gravity, begin[i].drag}, options.growth_length,
+                     std::min({options.growth_time, begin[i].lands, options.most_time - kSinkTime}));
   }
   // By the time when they land, so that those that land within an interval are found by halving.
   std::sort(begin, droplets.end(), [](const Droplet& a, const Droplet& b) { return a.lands < b.lands; });
@@ -128,7 +130,8 @@ void crown_and_cone(Splash& splash, const SplashOptions& options, Draws& draws, 
     const double speed = normal_within(draws, mean, kCrownSpeedSigma * mean, r.slowest, r.fastest);
     const double angle = normal_within(draws, kCrownAngle, kCrownAngleSigma, kCrownLowest, kCrownHighest);
     Droplet tip = pile(impact, frame, splash.circle, first + between * i, 0, speed, angle * kPi / 180);
-    fly(tip, kCrownTip * impact.diameter, impact.wind, impact.normal, options, false);
+    fly(tip, kCrownTip * impact.diameter, impact.wind, impact.normal, options.gravity, kCrownPart * options.most_time);
+    tip.leaves = tip.lands;
     splash.cone_starts = std::max(splash.cone_starts, tip.lands);
     droplets.push_back(tip);
   }
@@ -144,14 +147,14 @@ void crown_and_cone(Splash& splash, const SplashOptions& options, Draws& draws, 
   const bool level = glm::dot(impact.normal, options.up) > 0.5f;
   const vec3 direction = level ? options.up : impact.normal;
   drop.velocity = direction * speed;
-  SplashOptions rest = options;
-  rest.most_time = std::max(options.most_time - splash.cone_starts, 2 * kLandFade);
-  fly(drop, drop.radius, vec3(0.0f), direction, rest, false);
-  // Up: v exp(-k t) = g (1 - exp(-k t)) / k.
+  fly(drop, drop.radius, vec3(0.0f), direction, options.gravity, options.most_time - kLandFade - splash.cone_starts);
+  // Up until v exp(-k t) = g (1 - exp(-k t)) / k; what never turns is let go halfway.
   const float gravity = -glm::dot(options.gravity, direction);
-  const float top =
-      drop.drag * speed < 1e-4f * gravity ? speed / gravity : std::log1p(drop.drag * speed / gravity) / drop.drag;
-  drop.leaves = splash.cone_starts + (gravity > 0 ? std::min(top, drop.lands) : drop.lands);
+  float top = 0.5f * drop.lands;
+  if (gravity > 0)
+    top = std::min(top, drop.drag * speed < 1e-4f * gravity ? speed / gravity
+                                                            : std::log1p(drop.drag * speed / gravity) / drop.drag);
+  drop.leaves = splash.cone_starts + top;
   drop.lands += splash.cone_starts;
   splash.ends = drop.lands + kLandFade;
 }

@@ -48,7 +48,7 @@ float covered_area(const WaterPiece& piece, vec3 direction) {
       const vec3 corners[] = {a, b, -a, -b};
       float sum = 2 * std::abs(glm::dot(glm::cross(a, b), direction));
       for (int i = 0; i < 4; ++i)
-        sum += 0.5f * std::abs(glm::dot(glm::cross(corners[i] - axis, corners[(i + 1) % 4] - axis), direction));
+        sum += 0.5f * std::abs(glm::dot(glm::cross(corners[i] - axis, corners[(i + 1) % 4] - corners[i]), direction));
       return piece.opacity * 0.5f * sum;
     }
     case WaterPiece::Kind::streak:
