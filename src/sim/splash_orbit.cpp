@@ -7,6 +7,12 @@
 #include "meniscus/formulas/rain.h"
 
 namespace meniscus {
+namespace {
+
+/// Part of the time by which Newton's last step may have moved it: each step squares the error, here to below 1e-6.
+constexpr float kNear = 3e-4f;
+
+}  // namespace
 
 float air_drag(float speed, float diameter) {
   return formulas::drag_rate(speed, diameter, kWaterDensity, kAirDensity, kAirViscosity);
@@ -37,15 +43,15 @@ float landing_time(const Orbit& orbit, vec3 normal, float latest) {
   float low = 0, high = latest;
   float t = g < 0 ? std::min(-2 * v / g, 0.5f * latest) : 0.5f * latest;
   for (int i = 0; i < 64; ++i) {
-    const float value = mean(t);
+    const float x = k * t, part = formulas::decay_mean(x);
+    const float value = w + (v - w) * part + g * t * formulas::decay_rest(x);
     (value > 0 ? low : high) = t;
-    const float last = w + (v - w) * std::exp(-k * t) + g * t * formulas::decay_mean(k * t);  // velocity at t
+    const float last = w + (v - w) * (1 - x * part) + g * t * part;  // velocity at t
     const float slope = (last - value) / t;
     float next = t - value / slope;
+    if (std::abs(next - t) <= kNear * t) return std::min(next, latest);
     if (!(next > low && next < high)) next = 0.5f * (low + high);
-    const float change = std::abs(next - t);
     t = next;
-    if (change <= 1e-6f * t) break;
   }
   return t;
 }
@@ -64,10 +70,9 @@ float leaving_time(const Orbit& orbit, float distance, float latest) {
     const vec3 velocity = formulas::orbit_velocity(orbit.velocity, orbit.wind, orbit.gravity, orbit.drag, t);
     const float slope = glm::dot(velocity, at) / gone;
     float next = t - (gone - distance) / slope;
+    if (std::abs(next - t) <= kNear * t) return std::min(next, latest);
     if (!(next > low && next < high)) next = 0.5f * (low + high);
-    const float change = std::abs(next - t);
     t = next;
-    if (change <= 1e-5f * t) break;
   }
   return t;
 }

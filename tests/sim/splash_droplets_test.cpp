@@ -14,12 +14,12 @@ struct Mean {
   double droplets = 0;
 };
 
-/// Over 100,000 splashes of a puddle of 3 mm.
+/// Over 100,000 splashes on wet asphalt.
 Mean mean_of(vec3 velocity, vec3 wind, vec3 normal = vec3(0, 1, 0)) {
   Mean mean;
   std::vector<Droplet> droplets;
   for (std::uint64_t id = 0; id < 100'000; ++id) {
-    Impact impact = impact_on(GroundMaterial::asphalt, Wetness::puddle_3mm, id);
+    Impact impact = impact_on(GroundMaterial::asphalt, Wetness::wet, id);
     impact.velocity = velocity;
     impact.wind = wind;
     impact.normal = normal;
@@ -36,9 +36,14 @@ Mean mean_of(vec3 velocity, vec3 wind, vec3 normal = vec3(0, 1, 0)) {
   return mean;
 }
 
-// 900,000 droplets of up to 1.5 m/s: a standard error below 0.001 m/s and, at 0.2 m of way, 0.0001 m.
+const Mean& upright() {
+  static const Mean mean = mean_of({0, -6.5f, 0}, vec3(0.0f));
+  return mean;
+}
+
+// 300,000 droplets of up to 1 m/s: a standard error below 0.001 m/s and, at 0.05 m of way, 0.0001 m.
 TEST(Splashes, OfUprightDropsGoNowhereOnTheMean) {
-  const Mean mean = mean_of({0, -6.5f, 0}, vec3(0.0f));
+  const Mean& mean = upright();
   EXPECT_NEAR(mean.velocity.x, 0, 0.003);
   EXPECT_NEAR(mean.velocity.z, 0, 0.003);
   EXPECT_NEAR(mean.landing.x, 0, 0.0005);
@@ -49,15 +54,15 @@ TEST(Splashes, TakeOverTheStatedPartOfTheDropsVelocityAlongTheGround) {
   const Mean mean = mean_of({3, -6.5f, -2}, vec3(0.0f));
   EXPECT_NEAR(mean.velocity.x, kCarried * 3, 0.003);
   EXPECT_NEAR(mean.velocity.z, kCarried * -2, 0.003);
-  EXPECT_GT(mean.landing.x, 0.02);
-  EXPECT_NEAR(mean.landing.z / mean.landing.x, -2.0 / 3, 0.02);
-  EXPECT_NEAR(mean.velocity.y, mean_of({0, -6.5f, 0}, vec3(0.0f)).velocity.y, 1e-6);  // and nothing else
+  EXPECT_GT(mean.landing.x, 0.01);
+  EXPECT_NEAR(mean.landing.z / mean.landing.x, -2.0 / 3, 0.03);
+  EXPECT_NEAR(mean.velocity.y, upright().velocity.y, 1e-6);  // and nothing else
 }
 
 TEST(Splashes, AreBlownByTheWindOnlyOnceTheyFly) {
-  const Mean still = mean_of({0, -6.5f, 0}, vec3(0.0f)), blown = mean_of({0, -6.5f, 0}, {5, 0, 0});
+  const Mean still = upright(), blown = mean_of({0, -6.5f, 0}, {5, 0, 0});
   EXPECT_NEAR(blown.velocity.x, still.velocity.x, 1e-9);
-  EXPECT_GT(blown.landing.x, 0.01);
+  EXPECT_GT(blown.landing.x, 0.002);
   EXPECT_NEAR(blown.landing.z, 0, 0.0005);
 }
 
@@ -66,7 +71,7 @@ TEST(Splashes, StandOnWhatIsHitWhateverItsSlope) {
   const Mean mean = mean_of(velocity, vec3(0.0f), slope);
   const glm::dvec3 along = glm::dvec3(velocity - slope * glm::dot(velocity, slope)) * static_cast<double>(kCarried);
   const double away = glm::dot(mean.velocity, glm::dvec3(slope));
-  EXPECT_NEAR(away, mean_of({0, -6.5f, 0}, vec3(0.0f)).velocity.y, 1e-5);
+  EXPECT_NEAR(away, upright().velocity.y, 1e-5);
   EXPECT_NEAR(glm::distance(mean.velocity - glm::dvec3(slope) * away, along), 0, 0.004);
 }
 
@@ -137,7 +142,7 @@ TEST(Splashes, LetPilesGoAfterAUnitTimeOrLength) {
   for (std::uint64_t id = 0; id < 300; ++id)
     for (const Droplet& d : made(impact_on(GroundMaterial::asphalt, Wetness::wet, id), options).droplets) {
       const float gone = glm::length(formulas::orbit_offset(d.velocity, vec3(0.0f), options.gravity, d.drag, d.leaves));
-      EXPECT_LE(gone, 0.01001f);
+      EXPECT_LE(gone, 0.010001f);
       EXPECT_LE(d.leaves, 0.02f);
       if (d.leaves == d.lands)
         ++by_landing;

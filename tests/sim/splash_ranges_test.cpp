@@ -133,10 +133,16 @@ CellSamples draw(GroundMaterial material, Wetness wetness) {
 
 TEST(Splashes, DrawNumberAngleAndSpeedFromNormalDistributionsWithinTable1) {
   std::array<CellSamples, 15> cells;
+  // "Regardless of the material": see the next test.
+  const auto is_crown_elsewhere = [](std::size_t i) {
+    return kWetnesses[i % 5] == Wetness::puddle_10mm && kMaterials[i / 5] != GroundMaterial::asphalt;
+  };
   parallel_for(cells.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) cells[i] = draw(kMaterials[i / 5], kWetnesses[i % 5]);
+    for (std::size_t i = begin; i < end; ++i)
+      if (!is_crown_elsewhere(i)) cells[i] = draw(kMaterials[i / 5], kWetnesses[i % 5]);
   });
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (is_crown_elsewhere(i)) continue;
     const GroundMaterial material = kMaterials[i / 5];
     const Wetness wetness = kWetnesses[i % 5];
     const SplashKind kind = splash_kind(material, wetness);
@@ -161,6 +167,19 @@ TEST(Splashes, DrawNumberAngleAndSpeedFromNormalDistributionsWithinTable1) {
                         what + " number");
       expect_drawn_from(by.angle, truncated(r.angle_mean_deg, r.angle_sigma_deg, r.lowest_deg, r.highest_deg),
                         what + " angle");
+    }
+  }
+}
+
+TEST(CrownCone, IsTheSameOnAllMaterials) {
+  for (std::uint64_t id = 0; id < 1000; ++id) {
+    const MadeSplash asphalt = made(impact_on(GroundMaterial::asphalt, Wetness::puddle_10mm, id, kDiameters[id % 3]));
+    for (const GroundMaterial material : {GroundMaterial::concrete, GroundMaterial::steel}) {
+      const MadeSplash other = made(impact_on(material, Wetness::puddle_10mm, id, kDiameters[id % 3]));
+      EXPECT_EQ(other.splash.kind, SplashKind::crown_cone);
+      ASSERT_EQ(other.droplets.size(), asphalt.droplets.size());
+      for (std::size_t i = 0; i < other.droplets.size(); ++i)
+        EXPECT_EQ(other.droplets[i].velocity, asphalt.droplets[i].velocity);
     }
   }
 }

@@ -56,7 +56,8 @@ FORMULA vec3 orbit_offset(vec3 velocity, vec3 wind, vec3 gravity, float drag, fl
 /// Its velocity then, m/s: the derivative of orbit_offset().
 FORMULA vec3 orbit_velocity(vec3 velocity, vec3 wind, vec3 gravity, float drag, float time) {
   float x = drag * time;
-  return wind + (velocity - wind) * exp(-x) + gravity * (time * decay_mean(x));
+  float mean = decay_mean(x);
+  return wind + (velocity - wind) * (1.0f - x * mean) + gravity * (time * mean);
 }
 
 /// Number of drops in air by their diameter, 1/m^3 per mm of diameter [MarshallPalmer1948]: N_0 exp(-Lambda D) with
