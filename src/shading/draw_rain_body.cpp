@@ -15,6 +15,10 @@ namespace {
 constexpr float kScattered = 0.2f;
 /// Least variance of highlights, rad^2: narrower ones fall between pixels.
 constexpr float kLeastVariance = 3e-4f;
+/// Part of the faces' slope that piles are lit with: jets in the mean are round, and small ones are drawn as such.
+constexpr float kLean = 0.3f;
+/// Points along the edge of a pixel where small pieces are drawn whole.
+constexpr int kFine = 16;
 
 struct Pixels {
   int x0, y0, x1, y1;
@@ -81,9 +85,8 @@ Passage passage(const Ray& ray, const WaterPiece& ball) {
   return p;
 }
 
-vec3 ball_radiance(const RainPicture& picture, const Ray& ray, const Passage& p, float behind, float radius_px) {
+vec3 ball_radiance(const RainPicture& picture, const Ray& ray, const Passage& p, float behind, float cone) {
   const BodyRays body = picture.light.rays(ray.direction, p.normal);
-  const float cone = std::min(1.0f / radius_px, 0.3f);
   const vec3 point = ray.origin + p.t * ray.direction;
   const vec3 through = refracted_light(picture, point, body.exit, body.straight, p.t, behind, cone);
   vec3 seen =
@@ -105,7 +108,8 @@ void draw_ball(const RainPicture& picture, const Tile& tile, const Splat& splat)
   const float rim = std::sqrt(std::max(0.0f, radius * radius - 1.0f / 12.0f));
   // The picture in the ball comes out of the mean as it grows.
   const float detail = picture.look.level_of_detail ? glm::smoothstep(1.2f, 3.5f, radius) : 1.0f;
-  const int fine = picture.look.level_of_detail || radius > 2.5f ? 1 : 8;
+  const int fine = picture.look.level_of_detail || radius > 2.5f ? 1 : kFine;
+  const float cone = std::min(1.0f / radius, 0.3f);
   const vec2 centre{splat.x, splat.y};
   const Pixels pixels(tile, centre - radius - 1.0f, centre + radius + 1.0f);
   for (int y = pixels.y0; y < pixels.y1; ++y)
@@ -119,7 +123,7 @@ void draw_ball(const RainPicture& picture, const Tile& tile, const Splat& splat)
         covered = std::clamp(rim - p.beside * radius + 0.5f, 0.0f, 1.0f);
         if (!(covered > 0)) continue;
         colour = splat.colour;
-        if (detail > 0) colour += detail * (ball_radiance(picture, ray, p, behind, radius) - colour);
+        if (detail > 0) colour += detail * (ball_radiance(picture, ray, p, behind, cone) - colour);
         t = p.t;
       } else {
         for (int k = 0; k < fine * fine; ++k) {
@@ -129,7 +133,7 @@ void draw_ball(const RainPicture& picture, const Tile& tile, const Splat& splat)
           const Passage p = passage(ray, ball);
           if (!(p.beside < 1)) continue;
           covered += 1;
-          colour += ball_radiance(picture, ray, p, behind, radius * static_cast<float>(fine));
+          colour += ball_radiance(picture, ray, p, behind, 0.05f);
         }
         if (!(covered > 0)) continue;
         colour /= covered;
@@ -147,6 +151,7 @@ struct Face {
   std::array<vec3, 3> normals;     ///< not unit
   std::array<float, 3> distances;  ///< m
   float per_area = 0;              ///< 1 / twice the signed area, px^-2
+  vec3 margin{0.0f};               ///< by how much the weights differ between a pixel's middle and its corners
 
   /// Barycentric coordinates, all >= 0 inside.
   vec3 weights(vec2 p) const {
@@ -182,8 +187,11 @@ int faces_of(const RainPicture& picture, const WaterPiece& piece, std::array<Fac
     const vec2 a = face.corners[1] - face.corners[0], b = face.corners[2] - face.corners[0];
     const float area = a.x * b.y - a.y * b.x;
     if (!(std::abs(area) > 1e-9f)) return;
-    faces[static_cast<std::size_t>(count)] = face;
-    faces[static_cast<std::size_t>(count++)].per_area = 1.0f / area;
+    Face& added = faces[static_cast<std::size_t>(count++)];
+    added = face;
+    added.per_area = 1.0f / area;
+    const vec3 origin = added.weights({0, 0});
+    added.margin = 0.5f * (glm::abs(added.weights({1, 0}) - origin) + glm::abs(added.weights({0, 1}) - origin));
   };
   // Normals at the corners lean outwards along the diagonals, so that the light goes round the pile without edges.
   std::array<vec3, 4> places, normals;
@@ -191,7 +199,7 @@ int faces_of(const RainPicture& picture, const WaterPiece& piece, std::array<Fac
   for (std::size_t k = 0; k < 4; ++k) {
     places[k] = spot(base[k]);
     distances[k] = distance(base[k], places[k].z);
-    normals[k] = glm::normalize((base[k] - piece.from) * height + axis * half);
+    normals[k] = glm::normalize((base[k] - piece.from) * height + kLean * half * axis);
   }
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t next = (k + 1) % 4;
@@ -200,7 +208,8 @@ int faces_of(const RainPicture& picture, const WaterPiece& piece, std::array<Fac
     add({{vec2{places[k]}, vec2{places[next]}, vec2{tip}},
          {normals[k], normals[next], 0.5f * (normals[k] + normals[next])},
          {distances[k], distances[next], tip_distance},
-         0});
+         0,
+         {}});
   }
   if (seen_from(piece.from, -up)) {
     const vec3 n0 = -up;
@@ -208,13 +217,17 @@ int faces_of(const RainPicture& picture, const WaterPiece& piece, std::array<Fac
       add({{vec2{places[k]}, vec2{places[k + 1]}, vec2{places[(k + 2) % 4]}},
            {n0 + 0.7f * normals[k], n0 + 0.7f * normals[k + 1], n0 + 0.7f * normals[(k + 2) % 4]},
            {distances[k], distances[k + 1], distances[(k + 2) % 4]},
-           0});
+           0,
+           {}});
   }
   return count;
 }
 
 /// Part of the pixel around `middle` that lies within the face.
 float covered_part(const Face& face, vec2 middle, int fine) {
+  const vec3 at_middle = face.weights(middle), least = at_middle - face.margin, most = at_middle + face.margin;
+  if (most.x < 0 || most.y < 0 || most.z < 0) return 0;
+  if (least.x >= 0 && least.y >= 0 && least.z >= 0) return 1;
   int inside = 0;
   for (int k = 0; k < fine * fine; ++k) {
     const vec2 p = middle + vec2{(static_cast<float>(k % fine) + 0.5f) / static_cast<float>(fine) - 0.5f,
@@ -236,7 +249,7 @@ void draw_pyramid(const RainPicture& picture, const Tile& tile, const Splat& spl
       high = glm::max(high, corner);
     }
   const Pixels pixels(tile, low, high);
-  const int fine = picture.look.level_of_detail ? 4 : 8;
+  const int fine = picture.look.level_of_detail ? 4 : kFine;
   const float cone = std::clamp(2.0f / splat.w0, 0.02f, 0.3f);
   for (int y = pixels.y0; y < pixels.y1; ++y)
     for (int x = pixels.x0; x < pixels.x1; ++x) {
@@ -292,7 +305,15 @@ void draw_disk(const RainPicture& picture, const Tile& tile, const Splat& splat)
       const float dx = glm::length(meet(picture.view.ray(middle + vec2{1, 0}))) - rho;
       const float dy = glm::length(meet(picture.view.ray(middle + vec2{0, 1}))) - rho;
       const float slope = std::max(std::sqrt(dx * dx + dy * dy), 1e-6f);
-      const float covered = std::clamp((1.0f - rho) / slope + 0.5f, 0.0f, 1.0f);
+      float covered = std::clamp((1.0f - rho) / slope + 0.5f, 0.0f, 1.0f);
+      if (!picture.look.level_of_detail) {
+        int inside = 0;
+        for (int k = 0; k < kFine * kFine; ++k) {
+          const vec2 p{(static_cast<float>(k % kFine) + 0.5f) / kFine, (static_cast<float>(k / kFine) + 0.5f) / kFine};
+          inside += glm::length(meet(picture.view.ray(middle - 0.5f + p))) < 1 ? 1 : 0;
+        }
+        covered = static_cast<float>(inside) / (kFine * kFine);
+      }
       if (!(covered > 0)) continue;
       // A lens that is flat in its middle and steep at the rim.
       const float within = std::min(rho, 1.0f), rim = within * within * within * within;

@@ -17,33 +17,38 @@ constexpr float kScattered = 0.2f;
 /// Radians by which bumps blur what jets refract.
 constexpr float kJetCone = 0.3f;
 /// Radians between the points of a ball that its mean is taken from, as their rays go apart.
-constexpr float kBallCone = 0.2f;
+constexpr float kBallCone = 0.12f;
 /// Sun and lamps in the mean over a body, in radiances of a white ground.
 constexpr float kBrightestLamps = 12.0f;
 
 }  // namespace
 
-BallOptics::BallOptics(float ior) {
-  for (int k = 0; k <= kSteps; ++k) {
-    const float cos_i = static_cast<float>(k) / kSteps;
-    const formulas::Interface face = formulas::fresnel(cos_i, ior);
-    const float turn = 2.0f * (std::acos(cos_i) - std::acos(std::min(face.cos_t, 1.0f)));
-    bends_[static_cast<std::size_t>(k)] = {std::sin(turn), std::cos(turn), face.reflectance};
-  }
-  // Equal areas of the disc into rings of directions, by h = sin(half the angle): cosine = 1 - 2 h^2, and a ring's
-  // solid angle is 4 pi d(h^2).
-  constexpr int kAreas = 1 << 14;
-  for (int k = 0; k < kAreas; ++k) {
-    const float beside2 = (static_cast<float>(k) + 0.5f) / kAreas;  // squared distance from the axis
-    const formulas::Interface face = formulas::fresnel(std::sqrt(1.0f - beside2), ior);
-    const float turn = 2.0f * (std::asin(std::sqrt(beside2)) - std::acos(std::min(face.cos_t, 1.0f)));
-    const auto ring = [](float h) { return static_cast<std::size_t>(std::clamp(h * kSteps, 0.0f, kSteps - 1.0f)); };
-    phase_[ring(std::sin(0.5f * turn))] += (1.0f - face.reflectance) / kAreas;
-    phase_[ring(std::sqrt(1.0f - beside2))] += face.reflectance / kAreas;
+BallOptics::BallOptics(float ior) : ior_(ior) {
+  // Rings of directions by h = sin(half the angle): cosine = 1 - 2 h^2, and a ring's solid angle is 4 pi d(h^2).
+  // Mirrored light goes to h = cos i, evenly over the sphere but for its weight; refracted light from rings of equal
+  // area into the rings that it reaches.
+  std::array<float, kSteps> refracted{};
+  constexpr int kAreas = 512;
+  float before = 0;
+  for (int k = 1; k <= kAreas; ++k) {
+    const float beside2 = static_cast<float>(k) / kAreas;  // squared distance from the axis
+    const float middle2 = (static_cast<float>(k) - 0.5f) / kAreas;
+    const float sin_i = std::sqrt(beside2);
+    const float h = std::sin(std::asin(sin_i) - std::asin(sin_i / ior));
+    const float light = (1.0f - formulas::fresnel_reflectance(std::sqrt(1.0f - middle2), ior)) / kAreas;
+    const float low = std::clamp(before * kSteps, 0.0f, kSteps - 1e-3f),
+                high = std::clamp(h * kSteps, 0.0f, kSteps - 1e-3f);
+    for (int ring = static_cast<int>(low); ring <= static_cast<int>(high); ++ring) {
+      const float from = std::max(low, static_cast<float>(ring)), to = std::min(high, static_cast<float>(ring + 1));
+      refracted[static_cast<std::size_t>(ring)] += high > low ? light * (to - from) / (high - low) : light;
+    }
+    before = h;
   }
   for (int k = 0; k < kSteps; ++k) {
     const float inner = static_cast<float>(k) / kSteps, outer = static_cast<float>(k + 1) / kSteps;
-    phase_[static_cast<std::size_t>(k)] /= 4.0f * kPi * (outer * outer - inner * inner);
+    const float mirrored = formulas::fresnel_reflectance(0.5f * (inner + outer), ior);
+    const auto ring = static_cast<std::size_t>(k);
+    phase_[ring] = mirrored / (4.0f * kPi) + refracted[ring] / (4.0f * kPi * (outer * outer - inner * inner));
   }
 }
 
@@ -62,7 +67,7 @@ RainLight::RainLight(const View& view, const Surroundings& surroundings, float i
       width_(static_cast<float>(view.width)),
       height_(static_cast<float>(view.height)),
       nodes_(static_cast<std::size_t>(kColumns * kRows)) {
-  constexpr int kPoints = 40, kAcross = 12;
+  constexpr int kPoints = 96, kAcross = 8;
   // Points of a disc of equal areas, on a spiral.
   std::array<vec3, kPoints> disc;  // x, y and the cosine of incidence
   for (int k = 0; k < kPoints; ++k) {

@@ -1,9 +1,12 @@
 /// What balls and jets of water show of their surroundings.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
+#include "meniscus/formulas/optics.h"
 #include "shading/surroundings_parts.h"
 
 namespace meniscus {
@@ -22,12 +25,11 @@ class BallOptics {
   };
   /// @param cos_i  in [0, 1]
   Bend at(float cos_i) const {
-    const float x = cos_i * kSteps;
-    const std::size_t i = x >= kSteps ? kSteps - 1 : static_cast<std::size_t>(x > 0 ? x : 0);
-    const float t = x - static_cast<float>(i);
-    const Bend &a = bends_[i], &b = bends_[i + 1];
-    return {a.sine + t * (b.sine - a.sine), a.cosine + t * (b.cosine - a.cosine),
-            a.mirrored + t * (b.mirrored - a.mirrored)};
+    const float sin2 = std::max(0.0f, 1.0f - cos_i * cos_i), sin_i = std::sqrt(sin2);
+    const float sin_r = sin_i / ior_, cos_r = std::sqrt(std::max(0.0f, 1.0f - sin_r * sin_r));
+    // Of i - r, then of twice that.
+    const float sine = sin_i * cos_r - cos_i * sin_r, cosine = cos_i * cos_r + sin_i * sin_r;
+    return {2.0f * sine * cosine, cosine * cosine - sine * sine, formulas::fresnel_reflectance(cos_i, ior_)};
   }
   /// Mean radiance over the ball's disc for an irradiance of one, 1/sr; integrates to one over all directions.
   /// @param cosine  between the ray from the eye and the direction towards the light
@@ -35,7 +37,7 @@ class BallOptics {
 
  private:
   static constexpr int kSteps = 128;
-  std::array<Bend, kSteps + 1> bends_{};
+  float ior_;
   std::array<float, kSteps> phase_{};
 };
 

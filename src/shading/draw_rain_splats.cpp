@@ -18,12 +18,9 @@ constexpr float kNearest = 1e-3f;
 /// Streaks fade out on their way to the eye between these distances, m: a camera's lens would blur them away.
 constexpr float kStreakGone = 0.15f, kStreakWhole = 0.45f;
 /// Balls up to this radius are drawn as dots, px.
-constexpr float kDotRadius = 1.0f;
+constexpr float kDotRadius = 1.25f;
 /// Piles up to this width of their base are drawn as lines, px.
 constexpr float kLineWidth = 2.0f;
-/// Mean width of a square's shadow over all turns, in half diagonals: its perimeter over pi.
-constexpr float kMeanWidth = 4.0f * std::numbers::sqrt2_v<float> / kPi;
-
 bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /// A point of the picture.
@@ -213,7 +210,13 @@ class Maker {
     splat.t1 = tip->distance;
     splat.soft = half;
     const vec2 way = tip->place - base->place;
-    const float length = glm::length(way), width = kMeanWidth * half * base->per_metre;
+    // Of the base, across the axis.
+    const vec3 across = glm::cross(axis, base->direction);
+    const float aside = glm::length(across) * height, other = glm::dot(glm::cross(axis, piece.across), across);
+    const float reach = aside > 1e-3f * height * height
+                            ? std::max(std::abs(glm::dot(piece.across, across)) * height, std::abs(other)) / aside
+                            : half;
+    const float length = glm::length(way), width = 2.0f * reach * base->per_metre;
     if (!std::isfinite(length) || !std::isfinite(width)) return {};
     splat.colour = light_.jet(base->place + 0.4f * way, way);
     if (light_.has_lamps()) splat.colour += light_.lamps(piece.from, base->direction);
@@ -241,8 +244,9 @@ class Maker {
     if (!(piece.radius > 0) || !finite(piece.across) || !(glm::length(piece.across) > 0)) return {};
     const std::optional<Spot> centre = spot(piece.from);
     if (!centre || !(centre->depth > piece.radius + kNearest)) return {};
-    const vec3 normal = glm::normalize(piece.across);
-    const float cosine = std::abs(glm::dot(normal, centre->direction));
+    vec3 normal = glm::normalize(piece.across);
+    if (glm::dot(normal, centre->direction) > 0) normal = -normal;
+    const float cosine = -glm::dot(normal, centre->direction);
     const float major = piece.radius * centre->per_metre, minor = major * cosine;
     if (!std::isfinite(major)) return {};
     Splat splat = at(*centre, piece.opacity);
@@ -254,10 +258,13 @@ class Maker {
       splat.w0 = splat.w1 = 2.0f * major * (perspective_ ? centre->distance / centre->depth : 1.0f) * 1.1f;
       return splat;
     }
-    // Mostly its mirror image is seen.
-    const float mirrored = formulas::fresnel_reflectance(cosine, look_.ior);
-    splat.colour = light_.parts().radiance(formulas::mirrored(centre->direction, normal), 0.35f);
-    splat.alpha *= mirrored + 0.15f * (1.0f - mirrored);
+    // Its mirror image, and at the rim what is around; the ground shows through the rest.
+    const float mirrored = formulas::fresnel_reflectance(cosine, look_.ior), around = 0.13f * (1.0f - mirrored);
+    const vec3 mirror = formulas::mirrored(centre->direction, normal);
+    splat.colour =
+        (mirrored * light_.parts().radiance(mirror, 0.35f) + around * light_.parts().radiance(-mirror, 0.9f)) /
+        (mirrored + around);
+    splat.alpha *= mirrored + around;
     const float area = kPi * major * minor;
     if (major < 1.0f) {
       make_dot(splat, area);

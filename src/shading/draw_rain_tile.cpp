@@ -100,7 +100,7 @@ float visible_part(const Image<float>& depth, int x, int y, float t, float soft)
     const int above = y > 0 ? y - 1 : y + 1, below = y + 1 < depth.height() ? y + 1 : y - 1;
     within += slope(depth(x, above), depth(x, below));
   }
-  const float seen = 0.5f + (here + within - t) / (2.0f * soft);
+  const float seen = 0.5f + (here + 1.5f * within - t) / (2.0f * soft);
   return seen > 0 ? std::min(seen, 1.0f) : 0.0f;
 }
 
