@@ -6,7 +6,7 @@ namespace meniscus {
 namespace {
 
 /// Variance of a slope of value_noise().
-constexpr float kNoiseSlopes = 0.45f;
+constexpr float kNoiseSlopes = 0.74f;
 
 /// One octave of noise.
 struct Octave {
@@ -41,7 +41,7 @@ Grain asphalt_grain(vec2 p, float width, std::uint64_t seed) {
   add({0.043f, 0.13f, 0.0006f}, p, width, seed + 7, grain);
   add({0.019f, 0.12f, 0.0003f}, p, width, seed + 8, grain);
   // Stones in dark binder: the nearest centre among those of the cells around, each with its own radius.
-  constexpr float kPitch = 0.0085f, kMeanCover = 0.44f, kStone = 0.62f, kHeight = 0.0011f, kSlopes = 0.028f;
+  constexpr float kPitch = 0.0085f, kMeanCover = 0.61f, kStone = 0.58f, kHeight = 0.0009f, kSlopes = 0.042f;
   const float part = resolved(kPitch, width);
   grain.hidden_slopes += (1.0f - part * part) * kSlopes;
   if (part > 0) {
@@ -84,7 +84,7 @@ Grain concrete_grain(vec2 p, float width, std::uint64_t seed) {
   add({0.006f, 0.04f, 0.00025f}, p, width, seed + 22, grain);
   add({0.0016f, 0.07f, 0.00012f}, p, width, seed + 23, grain);
   // Pores: a few small dark holes.
-  constexpr float kPitch = 0.013f, kMean = 0.004f;
+  constexpr float kPitch = 0.013f, kMean = 0.0021f;
   const float part = resolved(0.5f * kPitch, width);
   if (part > 0) {
     const vec2 q = p / kPitch;

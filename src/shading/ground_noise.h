@@ -31,7 +31,7 @@ inline std::int32_t cell_of(float x) {
 }
 
 /// Numbers in [-1, 1) at integer places, between them by quintics: smooth, its mean zero, its variance about 0.18 and
-/// that of each slope about 0.45.                                                                    [Perlin2002]
+/// that of each slope 0.74.                                                                    [Perlin2002]
 inline PlaneNoise value_noise(vec2 p, std::uint64_t seed) {
   const std::int32_t i = cell_of(p.x), j = cell_of(p.y);
   const float x = std::clamp(p.x - static_cast<float>(i), 0.0f, 1.0f);

@@ -103,6 +103,10 @@ class WetGroundCover final : public GroundCover {
   }
 
   void cover_one(vec3 point, vec3 direction, float width, SolidHit& hit) const {
+    // Places that are none are somewhere all the same.
+    for (int axis = 0; axis < 3; ++axis)
+      if (!std::isfinite(point[axis])) point[axis] = 0;
+    if (!(width >= 0)) width = 0;
     // The plane of the grain: the one of two axes that the face lies in most.
     int u = axes_.a, v = axes_.b;
     const vec3 across = glm::abs(hit.face_normal);
@@ -169,7 +173,7 @@ class WetGroundCover final : public GroundCover {
       ior += share * own_ior;
     }
     hit.albedo = albedo;
-    hit.roughness = std::max(roughness, hidden);
+    hit.roughness = std::min(std::max(roughness, hidden), 1.0f);
     hit.ior = ior;
     tilt(u, v, slope, direction, hit);
   }
