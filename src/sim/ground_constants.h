@@ -29,6 +29,11 @@ inline constexpr double kHeldFilm = 0.0002;
 /// Below this depth, drops stand apart on steel, m.
 inline constexpr double kLeastFilm = 0.00002;
 
+inline constexpr double kGroundGravity = 9.81;  ///< m/s^2
+inline constexpr double kStillDepth = 1e-8;     ///< m: less over the film does not flow
+inline constexpr double kStillLevel = 1e-9;     ///< m: levels that differ by less are equal, ...
+inline constexpr double kStillFlow = 1e-10;     ///< m^2/s: ... where no more than this flows
+
 /// No more water than this is taken at once, m.
 inline constexpr double kMostWater = 1000;
 
