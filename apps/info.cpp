@@ -92,17 +92,24 @@ std::string motion_of(const ObstacleRole& role) {
   return role.path.empty() ? "fixed" : "path";
 }
 
+/// Frames a second of frames that are made up or simulated.
+double frames_per_second_of(const SceneFile& scene) {
+  if (scene.simulation) return scene.simulation->frames_per_second;
+  return scene.heights ? scene.heights->frames_per_second : scene.picture.rain->frames_per_second;
+}
+
 /// What is known of frames that are made up or simulated, without making any.
 Json foreseen_json(const FrameSequence& sequence, const SceneFile& scene) {
   const Foreseen& foreseen = *sequence.foreseen;
   Json json;
-  json["kind"] = scene.simulation ? "simulation" : "heights";
+  json["kind"] = scene.simulation ? "simulation" : scene.heights ? "heights" : "rain";
   json["frames"] = sequence.frames.size();
-  json["fps"] = scene.simulation ? scene.simulation->frames_per_second : scene.heights->frames_per_second;
+  json["fps"] = frames_per_second_of(scene);
   json["bounds"] = Json::array({json_of(foreseen.bounds.low), json_of(foreseen.bounds.high)});
   json["up"] = std::string(name_of(foreseen.up));
   if (!scene.simulation) {
-    json["waves"] = scene.heights->waves.size();
+    if (scene.heights) json["waves"] = scene.heights->waves.size();
+    if (!scene.heights) json["rate_mm_h"] = json_of(scene.picture.rain->rain.rate_mm_h);
     return json;
   }
   const SimulationOptions& simulation = scene.simulation->simulation;
@@ -124,17 +131,21 @@ Json foreseen_json(const FrameSequence& sequence, const SceneFile& scene) {
 void print_foreseen(const FrameSequence& sequence, const SceneFile& scene) {
   const Foreseen& foreseen = *sequence.foreseen;
   const Bounds& box = foreseen.bounds;
-  const double fps = scene.simulation ? scene.simulation->frames_per_second : scene.heights->frames_per_second;
+  const double fps = frames_per_second_of(scene);
   const std::size_t frames = sequence.frames.size();
   std::cout << fmt::format("{} {} frames, {:g} a second: {:.3g} s\n", frames,
-                           scene.simulation ? "simulated" : "made-up", fps, static_cast<double>(frames) / fps);
+                           scene.simulation ? "simulated" : scene.heights ? "made-up" : "rainy", fps, static_cast<double>(frames) / fps);
   if (scene.simulation)
     std::cout << fmt::format("  {} particles at the start, spacing {:.4g} m, solver {}\n", foreseen.particles,
                              foreseen.spacing,
                              scene.simulation->simulation.fluid.solver == Solver::sph ? "sph" : "pbf");
   std::cout << fmt::format("  {} from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n",
-                           scene.simulation ? "tank" : "water", box.low.x, box.low.y, box.low.z, box.high.x, box.high.y,
+                           scene.simulation ? "tank" : scene.heights ? "water" : "ground", box.low.x, box.low.y, box.low.z, box.high.x, box.high.y,
                            box.high.z);
+  if (!scene.simulation && !scene.heights) {
+    std::cout << fmt::format("  {:g} mm of rain an hour\n", scene.picture.rain->rain.rate_mm_h);
+    return;
+  }
   if (!scene.simulation) {
     std::cout << fmt::format("  {} trains of waves{}\n", scene.heights->waves.size(),
                              scene.heights->image.empty() ? "" : " on " + scene.heights->image);

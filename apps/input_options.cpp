@@ -73,6 +73,8 @@ FrameSequence InputOptions::find_in(const SceneFile& scene, bool quiet) const {
   if (scene.waves) return select(waves_sequence(*scene.waves));
   if (scene.heights) return select(heights_sequence(*scene.heights, scene.up.value_or(Axis::y)));
   if (scene.simulation) return select(simulated_sequence(*scene.simulation, scene.picture.bodies));
+  if (scene.frames.empty() && scene.picture.rain)
+    return select(rain_sequence(*scene.picture.rain, scene.up.value_or(Axis::y)));
   return find(quiet);
 }
 

@@ -100,6 +100,7 @@ void PictureArguments::add_to(CLI::App& command) {
   add_eyes(command);
   add_light(command);
   add_solids(command);
+  add_rain(command);
   add_camera(command);
 }
 

@@ -30,6 +30,7 @@ class PictureArguments {
   void add_eyes(CLI::App& command);
   void add_light(CLI::App& command);
   void add_solids(CLI::App& command);
+  void add_rain(CLI::App& command);
   void add_camera(CLI::App& command);
 
   std::vector<PictureSetter> setters_;

@@ -23,6 +23,12 @@ void PictureArguments::add_light(CLI::App& command) {
         p.sun_scale = v;
       },
       "Factor of the sun's light (default: 1)");
+  group.number<float>(
+      "--clouds", "COVER", [](PictureOptions& p, float v) { p.cloud_cover = in_range("--clouds", v, 0.0f, 1.0f); },
+      "Of the analytic sky: 0 clear, 1 overcast without a sun (default: 0; in the rain 1)");
+  group.number<float>(
+      "--sky-scale", "FACTOR", [](PictureOptions& p, float v) { p.sky_scale = in_range("--sky-scale", v, 0.0f, 1e6f); },
+      "Factor of the light of sky and sun (default: 1)");
   group.list(
       "--lamp", "X,Y,Z:INTENSITY",
       [](PictureOptions& p, const std::string& text) { p.lamps.push_back(parse_lamp("--lamp", text)); },

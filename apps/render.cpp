@@ -51,9 +51,9 @@ SceneFile scene_of(RenderArguments& arguments) {
   SceneFile scene;
   const std::optional<std::string> path = arguments.input.scene_file();
   if (path) scene = read_scene_file(*path);
-  if (path && scene.frames.empty() && !scene.waves && !scene.simulation && !scene.heights)
+  if (path && scene.frames.empty() && !scene.waves && !scene.simulation && !scene.heights && !scene.picture.rain)
     throw Error(ErrorCode::not_found, {"the scene file names no water",
-                                       "\"water\": {\"frames\": ...}, or waves, heights or simulation",
+                                       "\"water\": {\"frames\": ...}, or waves, heights or simulation; or rain",
                                        {},
                                        *path,
                                        {},
@@ -71,6 +71,8 @@ SceneFile scene_of(RenderArguments& arguments) {
 
 /// Refuses what cannot be meant together.
 void check_together(const PictureOptions& picture) {
+  if (picture.rain && picture.camera.orthographic_height && !picture.path)
+    throw UsageError("--orthographic: rain is seen through a perspective camera");
   if (picture.heights && picture.method != SurfaceMethod::height_field)
     throw UsageError("--surface: the scene's water.heights is a height field, and no particles are there");
   if (picture.optics.refraction == RefractionMethod::virtual_eye && picture.camera.orthographic_height && !picture.path)
