@@ -414,7 +414,7 @@ class Wind {
   bool uniform() const;                    ///< the same everywhere: without a field
   /// m that uniform wind carries what it carries from one time to another, either way round.
   glm::dvec3 carried(double from, double until) const;
-  float gust_acceleration() const;  ///< m/s^2, the most that gusts can have
+  float gust_acceleration() const;  ///< m/s^2, standard deviation of that of the gusts
   float finest() const;             ///< m over which a field changes; infinity without one
 
  private:
@@ -522,11 +522,14 @@ class Ripples {
 
  private:
   void set_step(double seconds);
-  void step();
+  void step(double seconds, double decay, bool border);
+  std::size_t padded(int i, int j) const {  ///< index of a point in speeds2_
+    return static_cast<std::size_t>(i + 1) + static_cast<std::size_t>(width_ + 2) * static_cast<std::size_t>(j + 1);
+  }
   RippleOptions options_;
   int width_ = 0, height_ = 0;
   std::vector<float> depths_;
-  std::vector<float> speeds2_, faces_a_, faces_b_;  ///< m^2/s^2, at points, and between them and those before them
+  std::vector<float> speeds2_;                      ///< m^2/s^2; 0 around the grid, where they have a point more
   std::vector<float> now_, before_;                 ///< m, after one unused; before: one inner step ago
   std::vector<float> keeps_;                        ///< part of a step's change that damping near the border lets through
   std::vector<std::uint8_t> wet_tiles_, moving_tiles_;

@@ -89,11 +89,12 @@ Rain::Rain(const RainOptions& options) : options_((check(options), options)), wi
   const double rate = share_ * all;
   parts->slot = kDropsPerSlot / std::max(rate, slowest);
   parts->number_below_ = poisson_below(rate * parts->slot);
-  // A chord of T s stands off a curve of acceleration a by a T^2 / 8.
-  const double gusts = wind_.gust_acceleration();
+  // A chord of T s stands off a curve of acceleration a by a T^2 / 8; gusts have hardly more than twice their
+  // deviation.
+  const double gusts = 2.0 * wind_.gust_acceleration();
   parts->ways_apart = gusts > 0 ? std::sqrt(8 * kWayOff / gusts) : 1e30;
   parts->step_length =
-      std::min(double{options.top} / 8, std::max(0.5 * double{wind_.finest()}, 1e-3 * double{options.top}));
+      std::min(double{options.top} / 8, std::max(0.25 * double{wind_.finest()}, 1e-3 * double{options.top}));
   parts_ = std::move(parts);
 }
 

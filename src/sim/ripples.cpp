@@ -13,10 +13,11 @@ namespace {
 
 constexpr float kGravity = 9.81f;        ///< m/s^2
 constexpr float kWaterDensity = 1000;    ///< kg/m^3
-constexpr double kCourant = 0.65;        ///< c step / points; stable up to 1 / sqrt(2)
+constexpr double kCourant = 0.8;         ///< c step / points; stable up to sqrt(3) / 2
 constexpr double kLeast_rel = 1.0 / 16;  ///< of the longest inner step: less time is kept for later
 constexpr double kMostSteps = 1e8;       ///< in one call
 constexpr int kLayer = 12;               ///< points along the border that let waves out
+constexpr int kLeastLayer = 4;           ///< a steeper end throws back more than it takes
 constexpr double kLayerDamping = 0.35;   ///< at its outer end, in speeds a step between points
 constexpr std::size_t kMostPoints = std::size_t{1} << 26;
 constexpr std::size_t kGrain = 16384;  ///< points of one piece
@@ -118,30 +119,25 @@ void Ripples::set_depths(std::vector<float> depths) {
   depths_ = std::move(depths);
 
   const SpeedsByDepth speeds(*this, options_.wavelength);
-  speeds2_.resize(points);
-  parallel_for(points, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      speeds2_[k] = speeds.squared(depths_[k]);
-      if (speeds2_[k] == 0) now_[k + 1] = before_[k + 1] = 0;
-    }
-  });
-  // Nothing flows through a face with a dry side, nor, as far as the faces go, over the border.
-  faces_a_.assign(points + 1, 0.0f);
-  faces_b_.assign(points + width, 0.0f);
-  const std::size_t rows_grain = std::max<std::size_t>(kGrain / width, 1);
+  const std::size_t stride = width + 2, rows_grain = std::max<std::size_t>(kGrain / width, 1);
+  speeds2_.resize(stride * (static_cast<std::size_t>(height_) + 2), 0.0f);
   parallel_for(static_cast<std::size_t>(height_), rows_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j)
-      for (std::size_t k = j * width; k < (j + 1) * width; ++k) {
-        const float here = speeds2_[k];
-        const auto face = [&](float other) { return here > 0 && other > 0 ? 0.5f * (here + other) : 0.0f; };
-        if (k > j * width) faces_a_[k] = face(speeds2_[k - 1]);
-        if (j > 0) faces_b_[k] = face(speeds2_[k - width]);
+      for (std::size_t i = 0; i < width; ++i) {
+        const float c2 = speeds.squared(depths_[i + j * width]);
+        speeds2_[i + 1 + stride * (j + 1)] = c2;
+        if (c2 == 0) now_[i + j * width + 1] = before_[i + j * width + 1] = 0;
       }
   });
   const std::size_t tiles_a = static_cast<std::size_t>(tiles_along(width_, kTileWidth));
   std::fill(wet_tiles_.begin(), wet_tiles_.end(), std::uint8_t{0});
-  for (std::size_t k = 0; k < points; ++k)
-    if (speeds2_[k] > 0) wet_tiles_[k / width / kTileHeight * tiles_a + k % width / kTileWidth] = 1;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(height_); ++j)
+    for (std::size_t a = 0; a < tiles_a; ++a) {
+      const float* row = speeds2_.data() + stride * (j + 1) + 1;
+      const float* end = row + std::min((a + 1) * kTileWidth, width);
+      if (std::any_of(row + a * kTileWidth, end, [](float c2) { return c2 > 0; }))
+        wet_tiles_[a + tiles_a * (j / kTileHeight)] = 1;
+    }
 
   // The longest step depends on the fastest waves that there may be, so that it stays as puddles grow.
   float fastest2 = 0;
@@ -151,42 +147,44 @@ void Ripples::set_depths(std::vector<float> depths) {
     fastest2 = deep * deep;
   }
   limit_ = fastest2 > 0 ? kCourant * double{options_.step} / std::sqrt(double{fastest2}) : 0.0;
-  const double step = limit_ == 0 ? 0 : step_ == 0 ? limit_ : std::min(step_, limit_);
-  step_ = step_ == 0 || step == 0 ? step : step_;
-  set_step(step);
+  set_step(limit_ == 0 || step_ == 0 ? limit_ : std::min(step_, limit_));
 }
 
-// The last step's change is what carries the waves' motion: it is stretched to the new step.
+// What waves do in a step is seen from the last one: with the acceleration now, it is told what they would have done in
+// a step of another length. u(t - s dt) = u - s (u - u-) + s (s - 1) / 2 u_tt dt^2.
 void Ripples::set_step(double seconds) {
   const std::size_t points = now_.size() - 2, width = static_cast<std::size_t>(width_);
-  if (seconds > 0 && std::abs(seconds - step_) > 1e-9 * seconds) {
-    const double ratio = seconds / step_;
+  if (seconds > 0 && step_ > 0 && std::abs(seconds - step_) > 1e-9 * seconds) {
     const float old_decay = static_cast<float>(std::exp(-options_.damping * step_));
+    for (float& height : before_) height *= old_decay;
+    const std::vector<float> old = before_;
+    step(step_, 1, false);
+    const double ratio = seconds / step_;
+    const float stretch = static_cast<float>(ratio), bend = static_cast<float>(0.5 * ratio * (ratio - 1));
     const float per_decay = static_cast<float>(std::exp(options_.damping * seconds));
-    const float stretch = static_cast<float>(ratio);
     parallel_for(points, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin + 1; k < end + 1; ++k)
-        before_[k] = per_decay * (now_[k] - stretch * (now_[k] - old_decay * before_[k]));
+        before_[k] =
+            per_decay * (now_[k] - stretch * (now_[k] - old[k]) + bend * (before_[k] - (now_[k] + now_[k]) + old[k]));
     });
   }
   step_ = seconds;
 
   // Points of the border let waves go on outwards, u_t + c u_n = 0 [Mur1981]; the layer before them damps those that
   // come aslant.
-  keeps_.assign(points, 1.0f);
-  const int layer = std::min(kLayer, std::min(width_, height_) / 8);
-  const auto damping = [&](int away) {  // in speeds a step between points
-    const double t = away < layer ? 1.0 - away / static_cast<double>(layer) : 0.0;
+  keeps_.resize(points, 1.0f);
+  const auto damping = [](int away, int points_along) {  // in speeds a step between points
+    const int layer = std::min(kLayer, points_along / 8);
+    const double t = layer >= kLeastLayer && away < layer ? 1.0 - away / static_cast<double>(layer) : 0.0;
     return kLayerDamping * t * t + (away == 0 ? 0.5 : 0.0);
   };
   for (int j = 0; j < height_; ++j) {
-    const double along_b = damping(j) + damping(height_ - 1 - j);
-    const bool inner = along_b == 0;
+    const double along_b = damping(j, height_) + damping(height_ - 1 - j, height_);
     for (int i = 0; i < width_; ++i) {
-      if (inner && i == layer + 1) i = std::max(i, width_ - layer - 1);
+      if (along_b == 0 && i == kLayer + 1) i = std::max(i, width_ - kLayer - 1);
       const std::size_t k = static_cast<std::size_t>(i) + width * static_cast<std::size_t>(j);
-      const double sigma =
-          (along_b + damping(i) + damping(width_ - 1 - i)) * std::sqrt(double{speeds2_[k]}) / double{options_.step};
+      const double c = std::sqrt(double{speeds2_[padded(i, j)]});
+      const double sigma = (along_b + damping(i, width_) + damping(width_ - 1 - i, width_)) * c / double{options_.step};
       keeps_[k] = static_cast<float>(1.0 / (1.0 + sigma * step_));
     }
   }
@@ -218,16 +216,20 @@ void Ripples::advance(double seconds) {
                                             {}});
   const double step = left_ / steps;
   if (std::abs(step - step_) > 1e-9 * step) set_step(step);
-  for (double done = 0; done < steps; ++done) this->step();
+  const double decay = std::exp(-options_.damping * step_);
+  for (double done = 0; done < steps; ++done) {
+    this->step(step_, decay, true);
+    std::swap(now_, before_);
+  }
   left_ = 0;
 }
 
-void Ripples::step() {
+// Heights one step on take the place of those one step ago.
+void Ripples::step(double seconds, double decay, bool border) {
   const std::size_t width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
   const std::size_t tiles_a = static_cast<std::size_t>(tiles_along(width_, kTileWidth)),
                     tiles_b = static_cast<std::size_t>(tiles_along(height_, kTileHeight));
-  const float decay = static_cast<float>(std::exp(-options_.damping * step_));
-  const double ratio = step_ / options_.step;
+  const double ratio = seconds / options_.step;
   const float scale = static_cast<float>(ratio * ratio);
   std::vector<std::uint8_t> next_states(moving_tiles_);
   const auto moves = [&](std::size_t a, std::size_t b) { return moving_tiles_[a + tiles_a * b] > kTileStill; };
@@ -249,15 +251,15 @@ void Ripples::step() {
           continue;
         }
         RippleRow row;
-        row.now = now_.data() + 1 + k;
-        row.above = j + 1 < height ? row.now + width : row.now;
-        row.below = j > 0 ? row.now - width : row.now;
+        row.now[1] = now_.data() + 1 + k;
+        row.now[0] = j > 0 ? row.now[1] - width : row.now[1];
+        row.now[2] = j + 1 < height ? row.now[1] + width : row.now[1];
+        for (std::size_t n = 0; n < 3; ++n) row.speeds2[n] = speeds2_.data() + (j + n) * (width + 2) + i0 + 1;
+        const bool near_border =
+            i0 <= kLayer || i0 + count + kLayer >= width || j <= kLayer || j + kLayer + 1 >= height;
+        row.keeps = border && near_border ? keeps_.data() + k : nullptr;
         row.before = before_.data() + 1 + k;
-        row.faces_a = faces_a_.data() + k;
-        row.faces_below = faces_b_.data() + k;
-        row.faces_above = faces_b_.data() + k + width;
-        row.keeps = keeps_.data() + k;
-        row.decay = decay;
+        row.decay = static_cast<float>(decay);
         row.scale = scale;
         row.count = count;
         largest = std::max(largest, step_row(row));
@@ -267,22 +269,31 @@ void Ripples::step() {
       next_states[tile] = !stepped ? calmer : largest > kNothing ? kTileMoves : std::max(calmer, kTileStill);
     }
   });
-  std::swap(now_, before_);
   moving_tiles_ = std::move(next_states);
 }
 
 double Ripples::energy() const {
   if (step_ == 0) return 0;
   // Leapfrog keeps the sum of kinetic energy half a step ago and the product of both times' slopes.
-  const std::size_t width = static_cast<std::size_t>(width_);
   const double decay = std::exp(-options_.damping * step_), cell = double{options_.step} * double{options_.step};
   double sum = 0;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(height_); ++j)
-    for (std::size_t k = j * width; k < (j + 1) * width; ++k) {
-      const double now = now_[k + 1], before = decay * before_[k + 1], rate = (now - before) / step_;
+  for (int j = 0; j < height_; ++j)
+    for (int i = 0; i < width_; ++i) {
+      const std::size_t k =
+          static_cast<std::size_t>(i) + static_cast<std::size_t>(width_) * static_cast<std::size_t>(j) + 1;
+      const double now = now_[k], before = decay * before_[k], rate = (now - before) / step_;
       sum += cell * rate * rate;
-      if (k > j * width) sum += faces_a_[k] * (now - now_[k]) * (before - decay * before_[k]);
-      if (j > 0) sum += faces_b_[k] * (now - now_[k + 1 - width]) * (before - decay * before_[k + 1 - width]);
+      const auto speed2 = [&](int di, int dj) { return double{speeds2_[padded(i + di, j + dj)]}; };
+      const auto pair = [&](int di, int dj, double sixths) {
+        if (!(speed2(0, 0) > 0 && speed2(di, dj) > 0)) return;
+        const std::size_t n = k + static_cast<std::size_t>(di + width_ * dj);
+        sum += sixths / 12 * (speed2(0, 0) + speed2(di, dj)) * (now_[n] - now) * (decay * before_[n] - before);
+      };
+      const auto dry = [&](int di, int dj, int ei, int ej) { return speed2(di, dj) + speed2(ei, ej) == 0 ? 1 : 0; };
+      pair(1, 0, 4 + dry(0, 1, 1, 1) + dry(0, -1, 1, -1));
+      pair(0, 1, 4 + dry(1, 0, 1, 1) + dry(-1, 0, -1, 1));
+      pair(1, 1, 1);
+      pair(-1, 1, 1);
     }
   return 0.5 * sum;
 }

@@ -43,9 +43,9 @@ void Ripples::hit(vec3 point, float diameter, float speed) {
                  {}});
   if (step_ == 0 || a < -0.5 || b < -0.5 || a >= width_ - 0.5 || b >= height_ - 0.5) return;
   const std::size_t width = static_cast<std::size_t>(width_);
-  const std::size_t middle =
-      static_cast<std::size_t>(std::lround(a)) + width * static_cast<std::size_t>(std::lround(b));
-  if (!(speeds2_[middle] > 0)) return;
+  const int middle_i = static_cast<int>(std::lround(a)), middle_j = static_cast<int>(std::lround(b));
+  if (!(speeds2_[padded(middle_i, middle_j)] > 0)) return;
+  const double depth = depths_[static_cast<std::size_t>(middle_i) + width * static_cast<std::size_t>(middle_j)];
 
   // Crater and rim (1 - s)^3 (1 - 5 s), s = r^2 / (5 R^2), which hold the same amount; its own energy against gravity,
   // g A^2 0.1587 pi R^2, is the part of the drop's that waves carry.
@@ -53,7 +53,7 @@ void Ripples::hit(vec3 point, float diameter, float speed) {
   const double cavity = cavity_radius(d, v, double{options_.surface_tension} / kWaterDensity);
   const double radius = std::max(cavity, kLeastRadius * double{options_.step});
   double amplitude = std::sqrt(kWaveEnergy * d * d * d * v * v / 12 / (kGravity * 0.15873 * radius * radius));
-  amplitude = std::min({amplitude, kSteepest * radius, kDeepest * double{depths_[middle]}}) * double{options_.strength};
+  amplitude = std::min({amplitude, kSteepest * radius, kDeepest * depth}) * double{options_.strength};
   const double reach = std::sqrt(5.0) * radius / double{options_.step}, per_reach2 = 1 / (reach * reach);
   const int i0 = std::max(static_cast<int>(std::ceil(a - reach)), 0),
             j0 = std::max(static_cast<int>(std::ceil(b - reach)), 0);
@@ -61,8 +61,7 @@ void Ripples::hit(vec3 point, float diameter, float speed) {
             j1 = std::min(static_cast<int>(std::floor(b + reach)), height_ - 1);
   const auto shape = [&](int i, int j) {
     const double s = ((i - a) * (i - a) + (j - b) * (j - b)) * per_reach2;
-    const std::size_t k = static_cast<std::size_t>(i) + width * static_cast<std::size_t>(j);
-    if (s >= 1 || !(speeds2_[k] > 0)) return 0.0;
+    if (s >= 1 || !(speeds2_[padded(i, j)] > 0)) return 0.0;
     const double t = 1 - s;
     return t * t * t * (5 * s - 1);
   };

@@ -13,15 +13,15 @@ constexpr int kTileWidth = 128, kTileHeight = 16;
 /// what is left is nothing to be seen, and is cleared from both arrays one after the other.
 constexpr std::uint8_t kTileMoves = 4, kTileStill = 2, kTileCleared = 0;
 
-/// A run of points of one row: pointers to its first point. The arrays reach one point farther on both sides.
+/// A run of points of one row, and of the rows around it: pointers to the first of them. One point more on both sides
+/// is read.
 struct RippleRow {
-  const float *now, *above, *below;  ///< this row, the next and the one before; m
-  const float* faces_a;              ///< between a point and the one before it; the last point's next is [count]
-  const float *faces_above, *faces_below;
-  const float* keeps;
-  float* before;  ///< one step ago; becomes one step on
-  float decay;    ///< of heights in a step
-  float scale;    ///< (step / points)^2, s^2/m^2
+  const float* now[3];      ///< m; of the row before, this one and the next
+  const float* speeds2[3];  ///< m^2/s^2; no wave goes to or from where it is 0
+  const float* keeps;       ///< P of u+ - u- = P (what it would be without damping at this point); null: 1
+  float* before;            ///< one step ago; becomes one step on
+  float decay;              ///< of heights in a step
+  float scale;              ///< (step / points)^2, s^2/m^2
   std::size_t count;
 };
 

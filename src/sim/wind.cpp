@@ -12,7 +12,7 @@ namespace meniscus {
 namespace {
 
 constexpr std::size_t kSines = 8;
-constexpr double kNextFrequency = 1.37;  ///< of a sine over the one before, plus a chance part of it
+constexpr double kNextFrequency = 1.25;  ///< of a sine over the one before, but for a chance part: five in all
 constexpr float kFastest = 200;          ///< m/s
 
 /// One component of the gusts: sines of chance phases, mean 0, whose powers fall with the frequency as in turbulence,
@@ -23,7 +23,7 @@ class Gusts {
   /// @param deviation  m/s
   /// @param period     s, of the slowest
   Gusts(double deviation, double period, Draws draws) {
-    double frequency = 1 / period, power = 0;
+    double frequency = draws.between(1, 1.2) / period, power = 0;  // else both components beat together
     for (Sine& sine : sines_) {
       sine = {std::pow(frequency * period, -1.0 / 3), 2 * std::numbers::pi * frequency,
               2 * std::numbers::pi * draws.uniform()};
@@ -44,10 +44,11 @@ class Gusts {
       sum += s.amplitude / s.rate * (std::cos(s.rate * from + s.phase) - std::cos(s.rate * until + s.phase));
     return sum;
   }
-  double most_change() const {
-    double sum = 0;
-    for (const Sine& s : sines_) sum += s.amplitude * s.rate;
-    return sum;
+  /// Standard deviation of the acceleration, m/s^2.
+  double change() const {
+    double squares = 0;
+    for (const Sine& s : sines_) squares += 0.5 * s.amplitude * s.amplitude * s.rate * s.rate;
+    return std::sqrt(squares);
   }
 
  private:
@@ -119,7 +120,7 @@ glm::dvec3 Wind::carried(double from, double until) const {
 
 float Wind::gust_acceleration() const {
   if (!parts_->gusty) return 0;
-  return static_cast<float>(std::hypot(parts_->gusts_along.most_change(), parts_->gusts_across.most_change()));
+  return static_cast<float>(std::hypot(parts_->gusts_along.change(), parts_->gusts_across.change()));
 }
 
 float Wind::finest() const { return parts_->field ? parts_->field->pitch() : std::numeric_limits<float>::infinity(); }
