@@ -17,10 +17,10 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 // What the paper leaves to "the size of the drop" and "the situation of the surface"; lengths in diameters of the drop.
-constexpr float kCircleWet = 0.5f, kCircle3mm = 0.75f, kCircle5mm = 1.0f;  ///< initial circle of the piles
-constexpr float kCircleCrown = 1.5f;                                       ///< and of a crown
+constexpr float kCircleWet = 0.75f, kCircle3mm = 1.0f, kCircle5mm = 1.5f;  ///< initial circle of the piles
+constexpr float kCircleCrown = 2.0f;                                       ///< and of a crown
 constexpr float kDisk = 1.5f;                                              ///< radius of the disk
-constexpr float kWidest = 0.3f;                                            ///< half a diagonal of a pile's base at most
+constexpr float kWidest = 0.4f;                                            ///< half a diagonal of a pile's base at most
 constexpr float kCrownLowest = 50, kCrownHighest = 80, kCrownAngle = 65, kCrownAngleSigma = 5;  ///< degrees
 constexpr float kCrownSpeed = 0.08f;       ///< of the crown's tips, over the drop's speed against the surface
 constexpr float kCrownSpeedSigma = 0.08f;  ///< over the mean
@@ -82,7 +82,7 @@ void scatter(Splash& splash, const SplashOptions& options, Draws& draws, std::ve
   const int number = number_within(draws, r.number_mean, r.number_sigma, r.fewest, r.most);
   const double between = 2 * kPi / number, first = 2 * kPi * draws.uniform();
   const double jitter = std::min<double>(kJitter * between, kJitterMost);
-  splash.width = std::min(kWidest * impact.diameter, 0.8f * splash.circle * static_cast<float>(between) / 2);
+  splash.width = std::min(kWidest * impact.diameter, 0.5f * splash.circle * static_cast<float>(between));
 
   std::array<double, kMostDroplets> volumes;
   double sum = 0;
@@ -123,7 +123,7 @@ void crown_and_cone(Splash& splash, const SplashOptions& options, Draws& draws, 
   const SplashRanges r = splash_ranges(impact.material, impact.wetness, size);
   const int number = number_within(draws, many.number_mean, many.number_sigma, many.fewest, many.most);
   const double between = 2 * kPi / number, first = 2 * kPi * draws.uniform();
-  splash.width = std::min(kWidest * impact.diameter, splash.circle * static_cast<float>(between) / 2);
+  splash.width = std::min(kWidest * impact.diameter, 0.5f * splash.circle * static_cast<float>(between));
   const double against = std::abs(glm::dot(impact.velocity, impact.normal));
   const double mean = std::clamp<double>(kCrownSpeed * against, r.slowest, r.fastest);
   for (int i = 0; i < number; ++i) {

@@ -6,7 +6,6 @@
 
 #include "meniscus/sim.h"
 #include "sim/splash_make.h"
-#include "sim/splash_orbit.h"
 #include "sim/splash_shapes.h"
 #include "sim/splash_view.h"
 
@@ -56,18 +55,16 @@ void check(const Impact& i) {
   require(i.diameter >= 1e-6f && i.diameter <= 1, "the diameter of a drop is out of range", "1e-6 to 1 m", i.diameter);
 }
 
-/// Velocity of a droplet as it comes down, m/s.
-float landing_speed(const Splash& splash, const Droplet& droplet, const SplashOptions& options) {
+/// A droplet as it comes down.
+Landing landing_of(const Splash& splash, const Droplet& droplet, const SplashOptions& options) {
+  // The drop of a cone sets out with it, and moves upright whatever the wind.
   const bool of_cone = splash.kind == SplashKind::crown_cone;
-  return glm::length(formulas::orbit_velocity(droplet.velocity, of_cone ? vec3(0.0f) : splash.impact.wind,
-                                              options.gravity, droplet.drag,
-                                              of_cone ? droplet.lands - splash.cone_starts : droplet.lands));
-}
-vec3 landing_point(const Splash& splash, const Droplet& droplet, const SplashOptions& options) {
-  const bool of_cone = splash.kind == SplashKind::crown_cone;
-  return droplet.start + formulas::orbit_offset(droplet.velocity, of_cone ? vec3(0.0f) : splash.impact.wind,
-                                                options.gravity, droplet.drag,
-                                                of_cone ? droplet.lands - splash.cone_starts : droplet.lands);
+  const vec3 wind = of_cone ? vec3(0.0f) : splash.impact.wind;
+  const float flight = of_cone ? droplet.lands - splash.cone_starts : droplet.lands;
+  const vec3 way = formulas::orbit_offset(droplet.velocity, wind, options.gravity, droplet.drag, flight);
+  const vec3 velocity = formulas::orbit_velocity(droplet.velocity, wind, options.gravity, droplet.drag, flight);
+  return {splash.impact.time + droplet.lands, droplet.start + way, volume_of(droplet), droplet.radius,
+          glm::length(velocity)};
 }
 
 }  // namespace
@@ -99,8 +96,7 @@ std::vector<Landing> Splashes::landings(double from, double until) const {
     const auto end = begin + static_cast<std::ptrdiff_t>(flying);
     auto droplet = std::upper_bound(begin, end, from, [&](double t, const Droplet& d) { return t < time_of(d); });
     for (; droplet != end && time_of(*droplet) <= until; ++droplet)
-      landings.push_back({time_of(*droplet), landing_point(splash, *droplet, options_), volume_of(*droplet),
-                          droplet->radius, landing_speed(splash, *droplet, options_)});
+      landings.push_back(landing_of(splash, *droplet, options_));
   }
   std::stable_sort(landings.begin(), landings.end(),
                    [](const Landing& a, const Landing& b) { return a.time < b.time; });
