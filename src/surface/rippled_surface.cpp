@@ -33,29 +33,65 @@ class Slopes {
       const float u = ripples.height(i, j);
       return std::isfinite(u) ? u : 0.0f;
     };
-    along_a_.push_back(Image<float>(width - 1, height));
-    along_b_.push_back(Image<float>(width, height - 1));
+    along_a_ = Image<float>(width - 1, height);
+    along_b_ = Image<float>(width, height - 1);
     for (int j = 0; j < height; ++j)
-      for (int i = 0; i + 1 < width; ++i) along_a_[0](i, j) = (level(i + 1, j) - level(i, j)) / step_.x;
+      for (int i = 0; i + 1 < width; ++i) along_a_(i, j) = (level(i + 1, j) - level(i, j)) / step_.x;
     for (int j = 0; j + 1 < height; ++j)
-      for (int i = 0; i < width; ++i) along_b_[0](i, j) = (level(i, j + 1) - level(i, j)) / step_.y;
+      for (int i = 0; i < width; ++i) along_b_(i, j) = (level(i, j + 1) - level(i, j)) / step_.y;
     last_ = {static_cast<float>(width - 1), static_cast<float>(height - 1)};
+    // Means over cells, over 2 x 2 of them, and so on, for pixels that are wider than the waves.
+    means_.emplace_back(width - 1, height - 1);
+    for (int j = 0; j + 1 < height; ++j)
+      for (int i = 0; i + 1 < width; ++i)
+        means_[0](i, j) = 0.5f * vec2{along_a_(i, j) + along_a_(i, j + 1), along_b_(i, j) + along_b_(i + 1, j)};
+    while (std::max(means_.back().width(), means_.back().height()) > 1) means_.push_back(halved(means_.back()));
   }
 
-  bool empty() const { return along_a_.empty(); }
+  bool empty() const { return means_.empty(); }
   vec3 up() const { return axes_.place(0, 0, 1); }
 
   /// Horizontal, world space; zero beyond the border.
-  vec3 at(vec3 point) const {
+  /// @param width  m, of what is averaged over
+  vec3 at(vec3 point, float width) const {
     const float i = (point[axes_.a] - low_.x) / step_.x, j = (point[axes_.b] - low_.y) / step_.y;
     const float border = std::min({i, j, last_.x - i, last_.y - j});
     if (!(border > 0)) return vec3{0.0f};
-    const float part = smooth(border / kFade);
-    return axes_.place(part * mean(along_a_[0], i - 0.5f, j), part * mean(along_b_[0], i, j - 0.5f), 0);
+    const float cells = width / std::min(step_.x, step_.y);
+    vec2 slope{0.0f};
+    if (!(cells > 1)) {
+      const float part = std::max(2.0f * cells - 1.0f, 0.0f);
+      slope = {mean(along_a_, i - 0.5f, j), mean(along_b_, i, j - 0.5f)};
+      if (part > 0) slope = glm::mix(slope, mean(means_[0], i - 0.5f, j - 0.5f), part);
+    } else {
+      const float level = std::min(std::log2(cells), static_cast<float>(means_.size() - 1));
+      const auto finer = static_cast<std::size_t>(level);
+      const std::size_t coarser = std::min(finer + 1, means_.size() - 1);
+      slope = glm::mix(mean_over(finer, i, j), mean_over(coarser, i, j), level - static_cast<float>(finer));
+    }
+    slope *= smooth(border / kFade);
+    return axes_.place(slope.x, slope.y, 0);
   }
 
  private:
-  static float mean(const Image<float>& image, float i, float j) {
+  static Image<vec2> halved(const Image<vec2>& fine) {
+    Image<vec2> coarse((fine.width() + 1) / 2, (fine.height() + 1) / 2);
+    for (int j = 0; j < coarse.height(); ++j)
+      for (int i = 0; i < coarse.width(); ++i) {
+        const int i1 = std::min(2 * i + 1, fine.width() - 1), j1 = std::min(2 * j + 1, fine.height() - 1);
+        coarse(i, j) = 0.25f * (fine(2 * i, 2 * j) + fine(i1, 2 * j) + fine(2 * i, j1) + fine(i1, j1));
+      }
+    return coarse;
+  }
+
+  vec2 mean_over(std::size_t level, float i, float j) const {
+    const float scale = std::ldexp(1.0f, -static_cast<int>(level));
+    return mean(means_[level], scale * i - 0.5f, scale * j - 0.5f);
+  }
+
+  /// Bilinear; the border's values beyond it.
+  template <class T>
+  static T mean(const Image<T>& image, float i, float j) {
     i = std::clamp(i, 0.0f, static_cast<float>(image.width() - 1));
     j = std::clamp(j, 0.0f, static_cast<float>(image.height() - 1));
     const int i0 = static_cast<int>(i), j0 = static_cast<int>(j);
@@ -66,7 +102,8 @@ class Slopes {
 
   FieldAxes axes_;
   vec2 low_, step_, last_{0.0f};
-  std::vector<Image<float>> along_a_, along_b_;
+  Image<float> along_a_, along_b_;  ///< between neighbours along a and along b
+  std::vector<Image<vec2>> means_;  ///< over squares of 1, 2, 4 ... cells
 };
 
 class RippledSurface final : public Surface {
@@ -101,15 +138,15 @@ class RippledSurface final : public Surface {
     if (slopes_.empty()) return;
     for (std::size_t i = 0; i < found.size(); ++i)
       if (found[i].distance < kInfinity)
-        found[i].normal = bent(found[i].normal, rays[i].origin + found[i].distance * rays[i].direction);
+        found[i].normal = bent(found[i].normal, rays[i].origin + found[i].distance * rays[i].direction, 0);
   }
 
  private:
-  /// The normal of a plane that is displaced upwards by the waves: n - (n . up) grad u.
-  vec3 bent(vec3 normal, vec3 point) const {
+  /// The normal of a plane that is displaced upwards by the waves, over `width` m: n - (n . up) grad u.
+  vec3 bent(vec3 normal, vec3 point, float width) const {
     const float upwards = glm::dot(normal, up_);
     if (!(upwards > 0)) return normal;
-    const vec3 slope = slopes_.at(point);
+    const vec3 slope = slopes_.at(point, width);
     if (slope == vec3{0.0f}) return normal;
     return glm::normalize(normal - upwards * slope);
   }
@@ -119,10 +156,15 @@ class RippledSurface final : public Surface {
     const StageTimer timer(times, "ripples");
     // Other small waves may have bent it before.
     if (seen.unbent_normal.empty()) seen.unbent_normal = seen.normal;
+    const bool orthographic = view.projection == Projection::orthographic;
+    const float pixel = view.pixel_size(1.0f);
     const auto bend_at = [&](std::size_t i, vec2 picture_point) {
       if (!(seen.depth[i] < kInfinity) || seen.normal[i] == vec3{0.0f}) return;
       const Ray ray = view.ray(picture_point);
-      seen.normal[i] = bent(seen.normal[i], ray.origin + seen.depth[i] * ray.direction);
+      // The pixel's print on the water is longer than wide; what lies between both is averaged over.
+      const float slant = std::max(std::abs(glm::dot(ray.direction, seen.normal[i])), 0.02f);
+      const float width = pixel * (orthographic ? 1.0f : seen.depth[i]) / std::sqrt(slant);
+      seen.normal[i] = bent(seen.normal[i], ray.origin + seen.depth[i] * ray.direction, width);
     };
     if (!points.empty()) {
       parallel_for(points.size(), 1024, [&](std::size_t begin, std::size_t end) {

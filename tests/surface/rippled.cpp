@@ -31,7 +31,7 @@ std::unique_ptr<Surface> plane_water(float half = 1) {
   return make_height_field_surface(field_of(plane, 0.1f, half), true);
 }
 
-View from_above() { return perspective_view({0.3f, 2.2f, 0.9f}, {0, 0.1f, 0}, {0, 1, 0}, 0.7f, 64, 48); }
+View from_above() { return perspective_view({0.3f, 2.2f, 0.9f}, {0, 0.1f, 0}, {0, 1, 0}, 0.7f, 320, 240); }
 
 TEST(RippledSurface, HasTheNormalsOfAPlaneDisplacedByTheRipples) {
   const auto water = make_rippled_surface(plane_water(), field_of(wave, 0.01f));
@@ -50,6 +50,38 @@ TEST(RippledSurface, HasTheNormalsOfAPlaneDisplacedByTheRipples) {
       EXPECT_LT(glm::length(seen.normal(x, y) - exact), 2e-3f);
     }
   EXPECT_GT(compared, 500u);
+}
+
+TEST(RippledSurface, IsAsSmoothAsStillWaterFromFarAway) {
+  const auto water = make_rippled_surface(plane_water(), field_of(wave, 0.01f));
+  const vec3 still = glm::normalize(vec3{-0.2f, 1, 0.1f});
+  float before = 1;
+  for (const float away : {1.5f, 5.0f, 20.0f}) {
+    const View view = perspective_view({0, away, 0}, {0, 0, 0}, {0, 0, -1}, 1.0f / away, 12, 12);
+    View wide = view;
+    wide.half_height *= away;  // pixels of the same angle at each distance
+    const SurfaceBuffers seen = water->see(wide.resized(24, 24));
+    float most = 0;
+    for (int k = 0; k < 24 * 24; ++k)
+      if (seen.depth[static_cast<std::size_t>(k)] < kInfinity)
+        most = std::max(most, glm::length(seen.normal[static_cast<std::size_t>(k)] - still));
+    EXPECT_LT(most, before) << away;
+    before = most;
+  }
+  EXPECT_LT(before, 0.01f);
+}
+
+TEST(RippledSurface, AndJointOnesAreTheSameForAnyNumberOfThreads) {
+  HeightField low = field_of([](float, float) { return 0.02f; }, 0.1f, 1.5f);
+  SurfaceBuffers first;
+  for (const int threads : {1, 2, 5}) {
+    const ThreadLimit limit(threads);
+    const auto water = make_rippled_surface(make_joint_surface(plane_water(), low), field_of(wave, 0.01f));
+    const SurfaceBuffers seen = water->see(from_above());
+    if (threads == 1) first = seen;
+    EXPECT_TRUE(std::equal(seen.normal.begin(), seen.normal.end(), first.normal.begin()));
+    EXPECT_TRUE(std::equal(seen.depth.begin(), seen.depth.end(), first.depth.begin()));
+  }
 }
 
 TEST(RippledSurface, ChangesNothingButNormals) {
