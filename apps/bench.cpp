@@ -12,6 +12,7 @@ void add_bench(CLI::App& program) {
   add_bench_point_sampled(*bench);
   add_bench_simulate(*bench);
   add_bench_tank(*bench);
+  add_bench_splash(*bench);
 }
 
 }  // namespace meniscus::apps
