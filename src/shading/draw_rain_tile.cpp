@@ -6,6 +6,9 @@
 namespace meniscus {
 namespace {
 
+/// Lines shorter and thinner than this are drawn as dots, px.
+constexpr float kChainLength = 4, kChainWidth = 0.75f;
+
 /// Integral of the quadratic B-spline from the far left to x: a filter of 3 px with the standard deviation of half a
 /// pixel. Sampled once a pixel, shapes of any direction keep their area within a per cent wherever they stand.
 float filtered_step(float x) {
@@ -41,7 +44,24 @@ void draw_dot(const RainPicture& picture, const Tile& tile, const Splat& splat) 
   }
 }
 
+/// A short thin line as dots a pixel or less apart, with the same area at a third of the cost.
+void draw_chain(const RainPicture& picture, const Tile& tile, const Splat& splat) {
+  const float links = std::ceil(splat.length), step = splat.length / links;
+  Splat dot = splat;
+  dot.w0 = dot.w1 = 1;
+  for (float k = 0.5f; k < links; ++k) {
+    const float along = k / links;
+    dot.x = splat.x + k * step * splat.ux;
+    dot.y = splat.y + k * step * splat.uy;
+    dot.t0 = splat.t0 + along * (splat.t1 - splat.t0);
+    dot.alpha = splat.alpha * step * (splat.w0 + along * (splat.w1 - splat.w0));
+    draw_dot(picture, tile, dot);
+  }
+}
+
 void draw_line(const RainPicture& picture, const Tile& tile, const Splat& splat) {
+  if (splat.length < kChainLength && std::max(splat.w0, splat.w1) < kChainWidth)
+    return draw_chain(picture, tile, splat);
   const float reach = 0.5f * std::max(splat.w0, splat.w1) + kRainFilter;
   const float end_x = splat.x + splat.length * splat.ux, end_y = splat.y + splat.length * splat.uy;
   const float low = std::min(splat.y, end_y) - reach, high = std::max(splat.y, end_y) + reach;
