@@ -114,8 +114,9 @@ struct RainyScene::Parts {
       rings_on_ground->advance(kTick);
     }
     if (rings_on_water) rings_on_water->advance(kTick);
-    on_cells.retire(until);
-    elsewhere.retire(until);
+    // A picture may be of any time in this tick: what is over at its beginning is not seen.
+    on_cells.retire(from);
+    elsewhere.retire(from);
   }
 
   void hit(const Flight& flight) {

@@ -30,7 +30,7 @@ TEST(Examples, AreReadAndHaveWater) {
   for (const std::string& path : scenes) {
     try {
       const SceneFile scene = read_scene_file(path);
-      EXPECT_EQ(scene.frames.empty(), scene.waves || scene.simulation || scene.heights) << path;
+      EXPECT_EQ(scene.frames.empty(), scene.waves || scene.simulation || scene.heights || scene.picture.rain) << path;
       if (scene.simulation) {
         EXPECT_GT(simulated_sequence(*scene.simulation, scene.picture.bodies).frames.size(), 1u) << path;
       }
