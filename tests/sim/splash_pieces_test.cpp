@@ -129,6 +129,33 @@ TEST(SplashPieces, LeaveOutNothingThatIsSeen) {
   EXPECT_EQ(pieces(splashes, -0.3, &cube).size(), whole.size());
 }
 
+TEST(MayShow, IsTrueForEveryBallOfWhichAPointIsInThePictureAndFalseForMostOthers) {
+  Draws draws(3);
+  const auto any = [&](double low, double high) { return static_cast<float>(draws.between(low, high)); };
+  const View views[] = {perspective_view({0, 0, 0}, {0.2f, -0.1f, -1}, {0, 1, 0}, 1.6f, 800, 500),
+                        orthographic_view({0, 0, 0}, {0.2f, -0.1f, -1}, {0, 1, 0}, 2, 800, 500)};
+  for (const View& view : views) {
+    int hidden = 0, kept_hidden = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const vec3 centre(any(-6, 6), any(-6, 6), any(-6, 2));
+      const float radius = any(0.1, 1.5);
+      bool seen = false;
+      for (int k = 0; k < 60 && !seen; ++k) {
+        const vec3 point = centre + radius * glm::normalize(vec3(any(-1, 1), any(-1, 1), any(-1, 1)));
+        const vec3 at = view.project(point);
+        seen = at.z > 0 && at.x >= 0 && at.x <= 800 && at.y >= 0 && at.y <= 500;
+      }
+      const bool may = may_show(view, centre, radius);
+      if (seen) {
+        ASSERT_TRUE(may) << i;
+      }
+      hidden += !seen;
+      kept_hidden += !seen && may;
+    }
+    EXPECT_LT(kept_hidden, 0.1 * hidden);
+  }
+}
+
 /// Area of the outline of points in the plane: around the hull by the leftmost turns.
 double hull_area(std::vector<glm::dvec2> points) {
   std::sort(points.begin(), points.end(), [](auto a, auto b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
@@ -246,6 +273,20 @@ TEST(Landings, AreOnLevelGroundAtItsHeight) {
       EXPECT_LE(landing.time, impact.time + SplashOptions{}.most_time);
     }
   }
+}
+
+TEST(Landings, OfACrownConeAreOneDropWhereItWentUp) {
+  Impact impact = impact_on(GroundMaterial::concrete, Wetness::puddle_10mm);
+  impact.point = {1, 2, 3};
+  impact.wind = {9, 0, 4};
+  Splashes one({});
+  one.add(impact);
+  const std::vector<Landing> landings = one.landings(0, 2);
+  ASSERT_EQ(landings.size(), 1u);
+  EXPECT_LT(glm::distance(landings[0].point, impact.point), 1e-5f);
+  const MadeSplash m = made(impact);
+  EXPECT_LT(landings[0].speed, m.droplets[0].velocity.y);  // the air has taken its part
+  EXPECT_GT(landings[0].speed, 0.9f * m.droplets[0].velocity.y);
 }
 
 TEST(Landings, FromAWallAreHandedBackWhenTheTimeIsUp) {
