@@ -81,8 +81,8 @@ Grain concrete_grain(vec2 p, float width, std::uint64_t seed) {
   const float boards = resolved(0.12f, width);
   if (boards > 0) grain.shade += boards * 0.04f * value_noise({p.x / 2.5f, p.y / 0.12f}, seed + 20).value;
   add({0.028f, 0.04f, 0.0004f}, p, width, seed + 21, grain);
-  add({0.006f, 0.04f, 0.00025f}, p, width, seed + 22, grain);
-  add({0.0016f, 0.07f, 0.00012f}, p, width, seed + 23, grain);
+  add({0.006f, 0.07f, 0.00025f}, p, width, seed + 22, grain);
+  add({0.0016f, 0.13f, 0.00014f}, p, width, seed + 23, grain);
   // Pores: a few small dark holes.
   constexpr float kPitch = 0.013f, kMean = 0.0021f;
   const float part = resolved(0.5f * kPitch, width);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "base/field_axes.h"
 #include "meniscus/formulas.h"
@@ -23,6 +24,8 @@ constexpr float kSteelIor = 6.0f;
 constexpr float kPuddleBegins = 0.0008f, kPuddleIsThere = 0.0014f;
 /// m of film that saturated ground shows without any water on it.
 constexpr float kDampFilm = 0.00004f;
+/// m of water in the dark spot of a drop, and m between spots.
+constexpr float kSpotDepth = 0.00015f, kSpots = 0.02f;
 
 float smooth(float t) {
   t = std::clamp(t, 0.0f, 1.0f);
@@ -31,7 +34,8 @@ float smooth(float t) {
 
 /// The state of a cell, and of a place between cells.
 struct Wet {
-  float saturation = 0;  ///< 0 .. 1
+  float saturation = 0;  ///< 0 .. 1, of what it can soak up
+  float dark = 0;        ///< 0 .. 1, of its face
   float depth = 0;       ///< m of water
   float material[3]{};   ///< shares, by GroundMaterial
 };
@@ -55,6 +59,10 @@ class WetGroundCover final : public GroundCover {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const double capacity = ground.capacity(i);
       cells_[i].saturation = capacity > 0 ? static_cast<float>(std::clamp(ground.soaked(i) / capacity, 0.0, 1.0)) : 0;
+      // Drops fall anywhere in a cell: each darkens its share of what the others left dry.
+      const auto darkened = [](double soaked) { return 1.0 - std::exp(-soaked / static_cast<double>(kSpotDepth)); };
+      if (capacity > 0)
+        cells_[i].dark = static_cast<float>(std::clamp(darkened(ground.soaked(i)) / darkened(capacity), 0.0, 1.0));
       cells_[i].depth = static_cast<float>(std::max(ground.depth(i), 0.0));
       cells_[i].material[static_cast<std::size_t>(ground.material(i))] = 1;
     }
@@ -95,11 +103,35 @@ class WetGroundCover final : public GroundCover {
             cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column)];
         const float w = wx[di] * wy[dj];
         sum.saturation += w * cell.saturation;
+        sum.dark += w * cell.dark;
         sum.depth += w * cell.depth;
         for (int m = 0; m < 3; ++m) sum.material[m] += w * cell.material[m];
       }
     }
     return sum;
+  }
+
+  /// How dark a place is where a part of the ground around it is: all or nothing, but for soft edges, to narrow beams.
+  float spotted(float dark, vec2 place, float print) const {
+    const float part = resolved(kSpots, print);
+    if (!(part > 0 && dark > 1e-3f && dark < 0.999f)) return dark;
+    // Spots around scattered points, some larger: the nearest by its own measure. Were the points scattered without any
+    // grid, `level` would take all values in [0, 1] alike.
+    const vec2 q = place / kSpots;
+    const std::int32_t i = cell_of(q.x), j = cell_of(q.y);
+    float nearest = 1e9f;
+    for (std::int32_t dj = -1; dj <= 1; ++dj)
+      for (std::int32_t di = -1; di <= 1; ++di) {
+        const std::uint64_t bits = place_bits(i + di, j + dj, look_.seed + 67);
+        const vec2 off =
+            q - vec2{static_cast<float>(i + di) + unit_of(bits, 0), static_cast<float>(j + dj) + unit_of(bits, 1)};
+        const float size = unit_of(bits, 2);
+        nearest = std::min(nearest, (off.x * off.x + off.y * off.y) / (0.05f + 2.2f * size * size * size));
+      }
+    // The mean of those sizes is 0.6.
+    const float level = 1.0f - std::exp(-std::numbers::pi_v<float> * 0.6f * nearest);
+    const float soft = std::max(dark * (1.0f - dark), 1e-3f);
+    return glm::mix(dark, smooth((dark - level) / soft + 0.5f), part);
   }
 
   void cover_one(vec3 point, vec3 direction, float width, SolidHit& hit) const {
@@ -131,6 +163,7 @@ class WetGroundCover final : public GroundCover {
     // Water runs off what is steep.
     wet.depth *= smooth((glm::dot(hit.face_normal, axes_.place(0, 0, 1)) - 0.5f) / 0.35f);
 
+    const float dark = spotted(wet.dark, place, print);
     // Films are not even: ground is not flat below a cell either.
     float unevenness = 1;
     if (wet.depth > 0)
@@ -162,7 +195,7 @@ class WetGroundCover final : public GroundCover {
         own = glm::mix(kSteelRoughness, kWetSteelRoughness, full);
         own_ior = kSteelIor;
       } else {
-        albedo += share * glm::mix(dry, wetted(dry), std::max(smooth(wet.saturation), full));
+        albedo += share * glm::mix(dry, wetted(dry), std::max(dark, full));
         own = glm::mix(1.0f, kFilmRoughness, full * (1.0f - puddle));
       }
       // Bumps that are not seen widen the mirror image: directions turn by twice the normals' angle.

@@ -78,6 +78,28 @@ TEST(WetGroundCover, DarkensWhatIsSoakedAsLeknerAndDorfSay) {
   }
 }
 
+TEST(WetGroundCover, ShowsTheFirstDropsAsDarkSpots) {
+  // A tenth of what it can soak up.
+  WetLook look;
+  look.albedo[0] = vec3{0.4f};
+  const auto cover = wet_ground_cover(
+      ground_of(GroundMaterial::concrete, 0.1 * ground_of(GroundMaterial::concrete).capacity(0)), look);
+  const auto dry = wet_ground_cover(ground_of(GroundMaterial::concrete), look);
+  const float wet = formulas::wet_albedo(0.4f, 1.333f) / 0.4f;
+  Draws draws(6);
+  double sum = 0;
+  int at_ends = 0;
+  constexpr int kPlaces = 20000;
+  for (int i = 0; i < kPlaces; ++i) {
+    const vec3 place{static_cast<float>(draws.between(-0.9, 0.9)), 0, static_cast<float>(draws.between(-0.9, 0.9))};
+    const float ratio = covered(*cover, place, kFine).albedo.y / covered(*dry, place, kFine).albedo.y;
+    sum += static_cast<double>(ratio) / kPlaces;
+    at_ends += ratio > 0.97f || ratio < wet + 0.06f;
+  }
+  EXPECT_NEAR(sum, static_cast<double>(covered(*cover, {0, 0, 0}).albedo.y / 0.4f), 0.03) << "as from afar";
+  EXPECT_GT(at_ends, kPlaces * 6 / 10) << "dark or dry, seldom between";
+}
+
 TEST(WetGroundCover, ShinesMoreTheThickerItsFilm) {
   for (const GroundMaterial material : {GroundMaterial::concrete, GroundMaterial::asphalt}) {
     EXPECT_EQ(covered(*wet_ground_cover(ground_of(material)), {0, 0, 0}).roughness, 1.0f) << "dry";
