@@ -250,7 +250,7 @@ void draw_pyramid(const RainPicture& picture, const Tile& tile, const Splat& spl
     }
   const Pixels pixels(tile, low, high);
   const int fine = picture.look.level_of_detail ? 4 : kFine;
-  const float cone = std::clamp(2.0f / splat.w0, 0.02f, 0.3f);
+  const float cone = std::clamp(4.0f / splat.w0, 0.04f, 0.45f);
   for (int y = pixels.y0; y < pixels.y1; ++y)
     for (int x = pixels.x0; x < pixels.x1; ++x) {
       const vec2 middle{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};

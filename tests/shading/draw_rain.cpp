@@ -343,6 +343,43 @@ TEST(DrawRain, SmallPiecesLookAsIfDrawnWhole) {
   }
 }
 
+TEST(DrawRain, MergedSplashesCannotBeToldFromWholeOnes) {
+  const vec3 dark{0.1f};
+  RainLook whole;
+  whole.level_of_detail = false;
+  double most = 0;
+  for (const Wetness wetness : {Wetness::wet, Wetness::puddle_5mm, Wetness::puddle_10mm})
+    for (std::uint64_t id = 0; id < 8; ++id) {
+      Splashes splashes{SplashOptions{}};
+      Impact impact;
+      impact.id = id;
+      impact.velocity = {0, -6.5f, 0};
+      impact.wetness = wetness;
+      splashes.add(impact);
+      for (const double time : {0.005, 0.02, 0.05}) {
+        std::vector<WaterPiece> all, merged;
+        splashes.pieces(time, nullptr, all);
+        if (all.size() < 2) continue;
+        // The finest picture in which it is merged.
+        View view;
+        for (float pixel = 0.005f; merged.size() != 1; pixel *= 1.1f) {
+          ASSERT_LT(pixel, 1);
+          view = orthographic_view({0.3f * pixel, 1, 3}, {0.3f * pixel, 0, 0}, {0, 1, 0}, 9 * pixel, 9, 9);
+          merged.clear();
+          splashes.pieces(time, &view, merged);
+        }
+        const Image<vec3> full = drawn(view, all, half_lit(), whole, dark);
+        const Image<vec3> part = drawn(view, merged, half_lit(), {}, dark);
+        const auto step = [](vec3 radiance) { return 255.0 * srgb_from_linear(radiance.x); };
+        for (std::size_t i = 0; i < full.size(); ++i) {
+          ASSERT_NEAR(step(full[i]), step(part[i]), 2) << static_cast<int>(wetness) << " " << id << " " << time;
+          most = std::max(most, std::abs(step(full[i]) - step(dark)));
+        }
+      }
+    }
+  EXPECT_GT(most, 2);  // there was something to see
+}
+
 // --- Degenerate input --------------------------------------------------------------------------------------------
 
 TEST(DrawRain, LeavesOutWhatIsNotThere) {
