@@ -190,15 +190,15 @@ TEST(Hollows, AreFilledAsByManyDrops) {
     const double much = trial % 2 == 0 ? 0.1 : 0.5;
     for (double& w : t.water) w = heights(random) < 0.5 ? 0 : much * heights(random);
     Pouring pouring(t);
-    const int parts = 1000;
+    const int parts = 500;
     for (int part = 0; part < parts; ++part)
       for (std::size_t c = 0; c < cells; ++c)
         if (t.water[c] > 0) pouring.drop(c, t.water[c] / parts);
     const double before = t.total(), drained = t.settle();
     EXPECT_NEAR(t.total() + drained, before, 1e-12 * before);
     if (trial % 3 == 0) continue;  // equal heights: where water parts is a matter of taste
-    EXPECT_NEAR(drained, pouring.drained, 0.002 * before) << trial;
-    for (std::size_t c = 0; c < cells; ++c) EXPECT_NEAR(t.water[c], pouring.depths()[c], 0.002) << trial << " " << c;
+    EXPECT_NEAR(drained, pouring.drained, 0.005 * before) << trial;
+    for (std::size_t c = 0; c < cells; ++c) EXPECT_NEAR(t.water[c], pouring.depths()[c], 0.005) << trial << " " << c;
   }
 }
 
