@@ -91,11 +91,15 @@ Rain::Way Rain::way(const RainDrop& drop) const {
     const double down = -carried(wind_, fall, axes, 0, 1)[axes.up];
     const double seconds = double{options_.top} / down;
     const int pieces = static_cast<int>(std::clamp(std::ceil(seconds / parts_->ways_apart), 1.0, double{kMostSteps}));
-    for (int i = 0; i <= pieces; ++i) {
+    way.points.reserve(static_cast<std::size_t>(pieces) + 1);
+    way.times.reserve(static_cast<std::size_t>(pieces) + 1);
+    for (int i = 0; i < pieces; ++i) {
       const double time = drop.time - seconds * (pieces - i) / pieces;
       way.times.push_back(time);
-      way.points.push_back(i == pieces ? drop.place : position(drop, time));
+      way.points.push_back(position(drop, time));
     }
+    way.times.push_back(drop.time);
+    way.points.push_back(drop.place);
     return way;
   }
   FieldSteps steps(wind_, drop, axes, parts_->step_length, -1);

@@ -38,10 +38,10 @@ class Gusts {
     for (const Sine& s : sines_) sum += s.amplitude * std::sin(s.rate * time + s.phase);
     return sum;
   }
-  double integral(double from, double until) const {
+  /// Of at(): its integral is the difference of this at both ends.
+  double primitive(double time) const {
     double sum = 0;
-    for (const Sine& s : sines_)
-      sum += s.amplitude / s.rate * (std::cos(s.rate * from + s.phase) - std::cos(s.rate * until + s.phase));
+    for (const Sine& s : sines_) sum -= s.amplitude / s.rate * std::cos(s.rate * time + s.phase);
     return sum;
   }
   /// Standard deviation of the acceleration, m/s^2.
@@ -114,8 +114,9 @@ bool Wind::still() const { return uniform() && !parts_->gusty; }
 glm::dvec3 Wind::carried(double from, double until) const {
   const glm::dvec3 steady = (until - from) * glm::dvec3(parts_->mean);
   if (!parts_->gusty) return steady;
-  return steady + parts_->gusts_along.integral(from, until) * parts_->along +
-         parts_->gusts_across.integral(from, until) * parts_->across;
+  const Gusts &along = parts_->gusts_along, &across = parts_->gusts_across;
+  return steady + (along.primitive(until) - along.primitive(from)) * parts_->along +
+         (across.primitive(until) - across.primitive(from)) * parts_->across;
 }
 
 float Wind::gust_acceleration() const {

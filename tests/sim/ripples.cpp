@@ -206,21 +206,19 @@ TEST(Ripples, SlowDownByHalfOnAQuarterOfTheDepth) {
 }
 
 TEST(Ripples, ComeBackFromAShoreButNotFromTheBorder) {
-  const auto returned = [&](float shore) {
-    Channel channel(6, 0.03f, [&](float a) { return a < shore ? 1.0f : 0.0f; });
-    const double speed = channel.ripples().speed(1);
+  // The highest of a wave that began at 4.5 m and has gone 2.5 m, there and back again, or on in a longer channel.
+  const auto highest = [&](float length, float shore, int from, int until) {
+    Channel channel(length, 0.03f, [&](float a) { return a < shore ? 1.0f : 0.0f; });
     channel.hit(450, 0.004f, 8);
-    channel.ripples().advance(1.0 / speed);
-    const double out = channel.crest(500, 595);
-    EXPECT_NEAR(out, 550, 25);
-    const double gone = channel.height(static_cast<int>(std::lround(out)));
-    channel.ripples().advance(1.5 / speed);
-    double back = 0;
-    for (int i = 400; i < 550; ++i) back = std::max(back, channel.height(i));
-    return back / gone;
+    channel.ripples().advance(2.5 / channel.ripples().speed(1));
+    double height = 0;
+    for (int i = from; i < until; ++i) height = std::max(height, channel.height(i));
+    return height;
   };
-  EXPECT_NEAR(returned(5.8f), 1, 0.05);
-  EXPECT_LT(returned(7), 0.03);
+  const double on = highest(9, 10, 600, 750);
+  EXPECT_GT(on, 1e-5);
+  EXPECT_NEAR(highest(6, 5.8f, 400, 550), on, 0.02 * on);
+  EXPECT_LT(highest(6, 7, 400, 550), 0.04 * on);
 }
 
 TEST(Ripples, DoNotComeBackAslantFromTheBorder) {
