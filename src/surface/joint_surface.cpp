@@ -8,8 +8,6 @@
 namespace meniscus {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// Takes from `other` what is nearer there, or nearer and known there alone.
 void take_nearer(const SurfaceBuffers& other, SurfaceBuffers& seen) {
   const std::size_t size = seen.depth.size();
