@@ -1,4 +1,4 @@
-/// Water at rest: the tree of hollows, and how it is filled.                                      [Barnes2020]
+/// Water at rest: the tree of hollows, and how it is filled.                                      [Barnes2021]
 #include "sim/hollows.h"
 
 #include "sim/hollow_tree.h"

@@ -6,7 +6,7 @@
 namespace meniscus {
 
 /// Water runs down to the hollows of a terrain, fills them to one level each, and runs over into the next hollow or
-/// over the border, as often as it must: a tree of hollows within hollows, each filled in one go.  [Barnes2020]
+/// over the border, as often as it must: a tree of hollows within hollows, each filled in one go.  [Barnes2021]
 ///
 /// Water runs to the lowest of the four neighbours; equal heights count as falling with the index. A cell of the border
 /// without a lower neighbour lets all water go. On its way down from where it fell, water first fills the `room` of the
