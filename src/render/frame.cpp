@@ -134,13 +134,14 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
   DryScene dry = dry_scene(settings, times);
   Scene& scene = dry.scene;
   WaterSurface water = water_surface(particles, settings, surface_options, dry.bodies, colours, times);
-  const Surface* deep = water.surface.get();  // puddles throw no caustics
+  // Puddles throw no caustics. Surfaces that rain is added to keep what they are made of, unless it is no water.
+  const Surface* deep = water.surface->bounds().empty() ? nullptr : water.surface.get();
   if (settings.rain) rain_on(settings, dry, water.surface, times);
   const Surface* surface = water.surface.get();
   frame.buffers = surface->see(view, {}, times);
 
   // Light.
-  light(scene, *deep, settings, times);
+  if (deep) light(scene, *deep, settings, times);
   OpticsInputs optics{settings.optics, nullptr, surface, nullptr};
   if (!surface->can_march() && optics.options.refraction == RefractionMethod::ray_traced)
     optics.options.refraction = RefractionMethod::thickness;

@@ -22,7 +22,7 @@ constexpr int kTicksOfFlow = 4;     ///< water runs every so many ticks
 constexpr int kTicksOfDepths = 25;  ///< and ripples are told how deep it is
 constexpr double kLongest = 86400;  ///< s that may be gone on at once
 /// s of rain before a film that begins on wet ground, so that splashes and rings are there in its first picture.
-constexpr double kBefore = 2.5;
+constexpr double kBefore = 1;
 constexpr double kSoonWet = 1;         ///< s of rain after which bodies count as wet
 constexpr float kBelow = 0.01f;        ///< m under the lowest cell where drops end
 constexpr float kPlane = 1e-3f;        ///< m under the lowest cell where the plane around the cells is
