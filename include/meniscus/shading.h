@@ -228,6 +228,7 @@ struct RainLook {
   float ior = 1.333f;
   float pile_opacity = 0.85f;   ///< of splashes: what is not them shows through, as foam and film do not refract alike
   bool level_of_detail = true;  ///< pieces smaller than a pixel are drawn as what they cover of it
+  float streak_strength = 1;    ///< factor of the opacity of streaks, >= 0
   float haze = 0;               ///< 1/m: extinction by rain too far away to be seen drop by drop
   vec3 haze_radiance{0.0f};     ///< of the light that it scatters instead
 };

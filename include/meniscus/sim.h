@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
 #include <vector>
@@ -349,7 +350,8 @@ struct SplashOptions {
   float growth_time = 0.03f;    ///< s after which a pile lets its droplet go
   float growth_length = 0.02f;  ///< m from its start after which it does, whichever comes first
   float most_time = 2;          ///< s after which a splash is over in any case, >= 0.1; so long a disk stays
-  bool secondary = false;       ///< droplets that land on water splash themselves, once: the caller adds their impacts
+  float size = 1;          ///< factor of the lengths of piles, crowns and droplets as drawn; their water is the same
+  bool secondary = false;  ///< droplets that land on water splash themselves, once: the caller adds their impacts
   std::uint64_t seed = 1;
 };
 
@@ -371,6 +373,8 @@ class Splashes {
   /// Nothing where splash_kind() is none.
   /// @return m^3 that fly away from the place; they come down again as landings
   double add(const Impact& impact);
+  /// The same for many, on all threads. @param flies  m^3, one an impact
+  void add(std::span<const Impact> impacts, std::span<double> flies);
   /// What comes down after `from` and not after `until`, in order of time. Landings are dropped with their splash: ask
   /// up to a time before you retire it. What has not come down after most_time, because it was blown or fell from a
   /// wall, is handed back where it is then.
@@ -425,8 +429,17 @@ class Wind {
 /// How fast a drop of this diameter, m, falls in still air at sea level, m/s; >= 0.               [GunnKinzer1949]
 float fall_speed(float diameter);
 
+/// A drop of the rain, known by where and when it would reach the level if nothing stood in its way.
+struct RainDrop {
+  std::uint64_t id = 0;
+  float diameter = 0;  ///< m
+  double time = 0;     ///< s, at `place`
+  vec3 place{0.0f};    ///< m, at the level
+  float weight = 1;    ///< it brings the water of so many drops like it
+};
+
 struct RainOptions {
-  float rate_mm_h = 10;      ///< > 0: mm of water an hour
+  float rate_mm_h = 10;      ///< mm of water an hour; 0: only `drops`
   float smallest_mm = 0.5f;  ///< diameters of the drops that are made one by one; smaller ones fall as mist
   float largest_mm = 6;
   Axis up = Axis::y;
@@ -439,15 +452,12 @@ struct RainOptions {
   /// Part of the drops that is made; each of them brings the water of 1 / share. 0: as much as most_per_second allows.
   float share = 0;
   double most_per_second = 200000;
+  /// Where it is looked at from at a time, s. Around that place all drops are made, farther away fewer, and of those
+  /// the large ones first; each brings the water of those that are left out. Null: the same share everywhere.
+  std::function<vec3(double)> eye;
+  float whole_within = 4;       ///< m from the eye, horizontally
+  std::vector<RainDrop> drops;  ///< beside the rain: single ones, by time and place; ids are given by Rain
   std::uint64_t seed = 1;
-};
-
-/// A drop of the rain, known by where and when it would reach the level if nothing stood in its way.
-struct RainDrop {
-  std::uint64_t id = 0;
-  float diameter = 0;  ///< m
-  double time = 0;     ///< s, at `place`
-  vec3 place{0.0f};    ///< m, at the level
 };
 
 /// Rain with the sizes of [MarshallPalmer1948] that falls as fast as [GunnKinzer1949] measured, carried by the wind.
@@ -497,8 +507,8 @@ struct RippleOptions {
   float strength = 1;               ///< factor of what a hit does
 };
 
-/// Small waves on thin water: u_tt = div(c^2 grad u) - 2 damping u_t - damping^2 u on points over water, mirrored at its
-/// shores, let out at the border of the grid.
+/// Small waves on thin water: u_tt = div(c^2 grad u) - 2 damping u_t - damping^2 u on points over water, mirrored at
+/// its shores, let out at the border of the grid.
 class Ripples {
  public:
   /// @throws Error invalid_argument; limit_exceeded: more than 2^26 points
@@ -529,9 +539,9 @@ class Ripples {
   RippleOptions options_;
   int width_ = 0, height_ = 0;
   std::vector<float> depths_;
-  std::vector<float> speeds2_;                      ///< m^2/s^2; 0 around the grid, where they have a point more
-  std::vector<float> now_, before_;                 ///< m, after one unused; before: one inner step ago
-  std::vector<float> keeps_;                        ///< part of a step's change that damping near the border lets through
+  std::vector<float> speeds2_;       ///< m^2/s^2; 0 around the grid, where they have a point more
+  std::vector<float> now_, before_;  ///< m, after one unused; before: one inner step ago
+  std::vector<float> keeps_;         ///< part of a step's change that damping near the border lets through
   std::vector<std::uint8_t> wet_tiles_, moving_tiles_;
   double limit_ = 0;  ///< s, that an inner step may last
   double step_ = 0;   ///< s, of the last inner steps
