@@ -18,6 +18,10 @@ struct Rain::Parts {
   std::vector<double> number_below_;  ///< probability of at most i drops in a slot
   double ways_apart = 0.05;           ///< s between points of a way in gusts
   double step_length = 0;             ///< m, of a way through a field
+  std::vector<RainDrop> single;       ///< beside the rain, in order of time
+
+  /// Drops without the single ones, as arriving().
+  std::vector<RainDrop> raining(const Rain& rain, double from, double until) const;
 };
 
 /// The wind at a drop less its fall, m/s: as fast as it would go after a while, and not slower downwards than a tenth

@@ -35,7 +35,9 @@ Sums sums_between(double rate, double low_mm, double high_mm, std::size_t steps)
 
 }  // namespace
 
-RainSpectrum::RainSpectrum(double rate, double smallest_mm, double largest_mm) {
+RainSpectrum::RainSpectrum(double rate, double smallest_mm, double largest_mm)
+    : below_(kSteps + 1, 0.0), guide_(kGuides + 1, 0) {
+  if (!(rate > 0)) return;  // without water there are no drops
   // Sizes fall by e every 1 / Lambda: beyond 40 of them there is nothing.
   const double e_fold_mm = std::pow(rate, 0.21) / 4.1;
   const Sums all = sums_between(rate, 0, 40 * e_fold_mm, 1 << 15);
@@ -50,7 +52,6 @@ RainSpectrum::RainSpectrum(double rate, double smallest_mm, double largest_mm) {
            double{fall_speed(static_cast<float>(d))};
   };
   const auto brought = [&](double d) { return density(d) * std::numbers::pi / 6 * d * d * d; };
-  below_.resize(kSteps + 1);
   for (std::size_t i = 0; i < kSteps; ++i) {
     const double low = first_ + static_cast<double>(i) * step_, middle = low + 0.5 * step_, high = low + step_;
     below_[i + 1] = below_[i] + step_ / 6 * (density(low) + 4 * density(middle) + density(high));
@@ -63,7 +64,6 @@ RainSpectrum::RainSpectrum(double rate, double smallest_mm, double largest_mm) {
   for (std::size_t i = 0; i <= kSteps; ++i)
     below_[i] = arrivals_ > 0 ? below_[i] * per_all : static_cast<double>(i) / kSteps;
   below_.back() = 1;
-  guide_.resize(kGuides + 1);
   std::size_t i = 0;
   for (std::size_t g = 0; g <= kGuides; ++g) {
     while (i + 1 < kSteps && below_[i + 1] < static_cast<double>(g) / kGuides) ++i;

@@ -10,7 +10,7 @@ namespace meniscus {
 /// the drops of all sizes, falling as [GunnKinzer1949] measured, bring exactly that rate.
 class RainSpectrum {
  public:
-  /// @param rate         mm/h, > 0
+  /// @param rate         mm/h, >= 0
   /// @param smallest_mm  diameters of the drops that are made, 0 < smallest < largest
   RainSpectrum(double rate, double smallest_mm, double largest_mm);
 

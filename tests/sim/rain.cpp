@@ -389,6 +389,58 @@ TEST(Rain, FallsAlongTheUpAxis) {
   EXPECT_LT(rain.velocity(drop, 0).z, -1);
 }
 
+RainDrop single(double time, vec3 place, float diameter) {
+  RainDrop drop;
+  drop.time = time;
+  drop.place = place;
+  drop.diameter = diameter;
+  return drop;
+}
+
+TEST(Rain, BringsSingleDropsWhereAndWhenTheyAreAskedFor) {
+  RainOptions options = rain_on(1, 0);
+  options.level = 0.5f;
+  options.wind.velocity = {2, 0, 0};
+  options.drops = {single(0.8, {0.25f, 7, -3}, 0.003f), single(0.2, {0, 0, 0}, 0.002f),
+                   single(0.8, {1, 0, 1}, 0.0001f)};
+  const Rain alone(options);
+  EXPECT_EQ(alone.drops_per_second(), 0);
+  EXPECT_EQ(alone.rate_of_mist(), 0);
+  EXPECT_EQ(alone.extinction(), 0);
+  const std::vector<RainDrop> drops = alone.arriving(-100, 1e12);
+  ASSERT_EQ(drops.size(), 3u);
+  EXPECT_EQ(drops[0].time, 0.2);
+  EXPECT_EQ(drops[0].place, (vec3{0, 0.5f, 0}));
+  EXPECT_EQ(drops[1].time, 0.8);
+  EXPECT_TRUE(drops[0].id != drops[1].id && drops[1].id != drops[2].id && drops[0].id != drops[2].id);
+  // After `from` and not after `until`, whatever the pieces.
+  EXPECT_TRUE(alone.arriving(0.2, 0.79).empty());
+  EXPECT_EQ(alone.arriving(0.1, 0.2).size(), 1u);
+  EXPECT_EQ(alone.arriving(0.2, 0.8).size(), 2u);
+  EXPECT_TRUE(alone.arriving(0.8, 0.1).empty());
+  // They fall like any other and bring their own water.
+  const RainDrop& drop = drops[1].diameter > 0.001f ? drops[1] : drops[2];
+  EXPECT_FLOAT_EQ(static_cast<float>(alone.volume(drop)), static_cast<float>(water(0.003)));
+  EXPECT_LT(glm::distance(alone.velocity(drop, 0.5), vec3{2, -fall_speed(0.003f), 0}), 1e-5f);
+  EXPECT_LT(glm::distance(alone.position(drop, 0.3), drop.place + 0.5f * vec3{-2, fall_speed(0.003f), 0}), 1e-4f);
+  // Beside rain they change nothing about it, however few of its drops are made.
+  RainOptions rainy = rain_on(2, 20);
+  rainy.share = 0.25f;
+  const std::vector<RainDrop> without = Rain(rainy).arriving(0, 1);
+  rainy.drops = options.drops;
+  const Rain both(rainy);
+  const std::vector<RainDrop> with = both.arriving(0, 1);
+  ASSERT_EQ(with.size(), without.size() + 3);
+  EXPECT_TRUE(std::is_sorted(with.begin(), with.end(), [](const auto& a, const auto& b) { return a.time < b.time; }));
+  std::unordered_set<std::uint64_t> ids;
+  for (const RainDrop& one : with) ids.insert(one.id);
+  EXPECT_EQ(ids.size(), with.size());
+  for (const RainDrop& one : without) {
+    EXPECT_EQ(ids.count(one.id), 1u);
+    EXPECT_NEAR(both.volume(one), 4 * water(one.diameter), 1e-6 * water(one.diameter));
+  }
+}
+
 void expect_refused(const std::function<void()>& call, ErrorCode code = ErrorCode::invalid_argument) {
   try {
     call();
@@ -405,7 +457,7 @@ TEST(Rain, RefusesWhatCannotBe) {
     return [options] { Rain{options}; };
   };
   const float nan = std::nanf("");
-  expect_refused(with([](RainOptions& o) { o.rate_mm_h = 0; }));
+  expect_refused(with([](RainOptions& o) { o.rate_mm_h = -1; }));
   expect_refused(with([&](RainOptions& o) { o.rate_mm_h = nan; }));
   expect_refused(with([](RainOptions& o) { o.rate_mm_h = 1e30f; }));
   expect_refused(with([](RainOptions& o) { o.smallest_mm = 7; }));
@@ -419,6 +471,9 @@ TEST(Rain, RefusesWhatCannotBe) {
   expect_refused(with([](RainOptions& o) { o.share = 2; }));
   expect_refused(with([](RainOptions& o) { o.most_per_second = 0; }));
   expect_refused(with([&](RainOptions& o) { o.wind.velocity.x = nan; }));
+  expect_refused(with([&](RainOptions& o) { o.drops = {single(nan, vec3{0.0f}, 0.001f)}; }));
+  expect_refused(with([&](RainOptions& o) { o.drops = {single(0, {0, 0, nan}, 0.001f)}; }));
+  expect_refused(with([](RainOptions& o) { o.drops = {single(0, vec3{0.0f}, 0)}; }));
   expect_refused(with([](RainOptions& o) { o.high = {1e5f, 1e5f}; }), ErrorCode::limit_exceeded);
   const Rain rain(rain_on(1, 10));
   expect_refused([&] { rain.arriving(0, std::numeric_limits<double>::infinity()); }, ErrorCode::limit_exceeded);
