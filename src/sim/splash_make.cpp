@@ -82,7 +82,7 @@ void scatter(Splash& splash, const SplashOptions& options, Draws& draws, std::ve
   const int number = number_within(draws, r.number_mean, r.number_sigma, r.fewest, r.most);
   const double between = 2 * kPi / number, first = 2 * kPi * draws.uniform();
   const double jitter = std::min<double>(kJitter * between, kJitterMost);
-  splash.width = std::min(kWidest * impact.diameter, 0.5f * splash.circle * static_cast<float>(between));
+  splash.width = std::min(kWidest * options.size * impact.diameter, 0.5f * splash.circle * static_cast<float>(between));
 
   std::array<double, kMostDroplets> volumes;
   double sum = 0;
@@ -123,7 +123,7 @@ void crown_and_cone(Splash& splash, const SplashOptions& options, Draws& draws, 
   const SplashRanges r = splash_ranges(impact.material, impact.wetness, size);
   const int number = number_within(draws, many.number_mean, many.number_sigma, many.fewest, many.most);
   const double between = 2 * kPi / number, first = 2 * kPi * draws.uniform();
-  splash.width = std::min(kWidest * impact.diameter, 0.5f * splash.circle * static_cast<float>(between));
+  splash.width = std::min(kWidest * options.size * impact.diameter, 0.5f * splash.circle * static_cast<float>(between));
   const double against = std::abs(glm::dot(impact.velocity, impact.normal));
   const double mean = std::clamp<double>(kCrownSpeed * against, r.slowest, r.fastest);
   for (int i = 0; i < number; ++i) {
@@ -180,9 +180,9 @@ void bound(Splash& splash, const SplashOptions& options, std::span<const Droplet
     away = std::max(away, std::sqrt(side * side + up * up));
     splash.fastest = std::max(splash.fastest,
                               glm::length(droplet.velocity) + glm::length(wind) + glm::length(options.gravity) * own);
-    splash.reach = std::max(splash.reach, droplet.radius);
+    splash.reach = std::max(splash.reach, options.size * droplet.radius);
   }
-  const float cone = splash.kind == SplashKind::crown_cone ? kConeWidth * splash.impact.diameter : 0;
+  const float cone = splash.kind == SplashKind::crown_cone ? options.size * kConeWidth * splash.impact.diameter : 0;
   splash.reach = 1.001f * (away + splash.circle + std::max({splash.reach, splash.width, cone}));
   splash.fastest *= 1.001f;
 }
@@ -206,7 +206,7 @@ Splash make_splash(const Impact& impact, const SplashOptions& options, std::vect
   splash.kind = splash_kind(impact.material, impact.wetness);
   splash.first = droplets.size();
   if (splash.kind == SplashKind::none) return splash;
-  splash.circle = circle_of(impact, splash.kind);
+  splash.circle = options.size * circle_of(impact, splash.kind);
   Draws draws(options.seed, impact.id);
   if (splash.kind == SplashKind::scattering) scatter(splash, options, draws, droplets);
   if (splash.kind == SplashKind::crown_cone) crown_and_cone(splash, options, draws, droplets);

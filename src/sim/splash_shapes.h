@@ -92,7 +92,7 @@ class SplashShapes {
   WaterPiece cone(const Droplet& drop) const {
     const float left = 1 - eased((age_ - drop.leaves) / std::max(sunk(drop) - drop.leaves, 1e-6f));
     const vec3 tip = place_of_cone(drop, std::min(age_, drop.leaves));
-    const float width = kConeWidth * splash_.impact.diameter * left;
+    const float width = options_.size * kConeWidth * splash_.impact.diameter * left;
     WaterPiece piece;
     piece.kind = WaterPiece::Kind::pyramid;
     piece.from = drop.start;
@@ -107,7 +107,7 @@ class SplashShapes {
   WaterPiece ball(const Droplet& droplet, vec3 centre, float from) const {
     WaterPiece piece;
     piece.from = centre;
-    piece.radius = droplet.radius * eased((age_ - from) / std::max(droplet.leaves - from, kSwell)) *
+    piece.radius = options_.size * droplet.radius * eased((age_ - from) / std::max(droplet.leaves - from, kSwell)) *
                    (1 - eased((age_ - droplet.lands) / kLandFade));
     return piece;
   }

@@ -42,6 +42,7 @@ void check(const SplashOptions& o) {
           "above 0, up to 10 s", o.growth_time);
   require(o.growth_length > 0 && o.growth_length <= 10, "the growth length of splashes is out of range",
           "above 0, up to 10 m", o.growth_length);
+  require(o.size >= 0.01f && o.size <= 100, "the size of splashes is out of range", "0.01 to 100", o.size);
   require(o.most_time >= 0.1f && o.most_time <= 60, "the longest time of splashes is out of range", "0.1 to 60 s",
           o.most_time);
 }
