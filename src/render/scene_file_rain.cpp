@@ -133,15 +133,41 @@ const Section& rain_ground_section() {
   return section;
 }
 
+const Section& rain_drop_section() {
+  static const auto drop = [](Draft& d) -> RainDrop& { return rain(d).rain.drops.back(); };
+  static const Section section{"rain.drops[]",
+                               "One drop that falls like those of the rain.",
+                               {{"time",
+                                 {a_number(between(-1000, 1e6))},
+                                 "0",
+                                 "When it would reach the level of the lowest ground, s of the film",
+                                 [](const JsonValue& v, Draft& d) { drop(d).time = v.number(); }},
+                                {"place",
+                                 {numbers(3, between(-1e6, 1e6))},
+                                 "[0, 0, 0]",
+                                 "Where it would; the coordinate along the up axis does not count, m",
+                                 [](const JsonValue& v, Draft& d) { drop(d).place = v.three(); }},
+                                {"diameter_mm",
+                                 {a_number(between(0.1, 20))},
+                                 "2",
+                                 "mm",
+                                 [](const JsonValue& v, Draft& d) { drop(d).diameter = 1e-3f * v.real(); }}},
+                               [](Draft& d) {
+                                 rain(d).rain.drops.emplace_back();
+                                 drop(d).diameter = 2e-3f;
+                               }};
+  return section;
+}
+
 const Section& rain_section() {
   static const Section section{
       "rain",
       "Rain, its splashes and what it does to the ground. Without water of its own a scene of rain has `frames` "
       "frames, numbered from 0. The sky is overcast unless environment.clouds says otherwise.",
       {{"rate_mm_h",
-        {a_number({0, 1000, true})},
+        {a_number(between(0, 1000))},
         "10",
-        "Water an hour, mm: 2 is a drizzle, 10 steady rain, 50 a cloudburst",
+        "Water an hour, mm: 2 is a drizzle, 10 steady rain, 50 a cloudburst; 0: only `drops`",
         [](const JsonValue& v, Draft& d) { rain(d).rain.rate_mm_h = v.real(); }},
        {"wind",
         {numbers(3, between(-100, 100))},
@@ -203,6 +229,14 @@ const Section& rain_section() {
         "200000",
         "Drops that are made a second at most, where `share` does not say",
         [](const JsonValue& v, Draft& d) { rain(d).rain.most_per_second = v.number(); }},
+       {"whole_within",
+        {a_number(between(0, 1000))},
+        "4",
+        "m from the eye, horizontally, within which all drops are made; farther away fewer, the large ones first, each "
+        "bringing the water of those that are not. Less where `most_per_second` is reached. 0, or where `share` says: "
+        "the same share everywhere",
+        [](const JsonValue& v, Draft& d) { rain(d).rain.whole_within = v.real(); }},
+       {"drops", {objects(rain_drop_section())}, "[]", "Single drops beside the rain", nullptr},
        {"top",
         {a_number(between(0.1, 1000))},
         "8",
@@ -223,6 +257,11 @@ const Section& rain_section() {
         "12",
         "Distance from the eye up to which drops are drawn one by one, m; beyond they are haze",
         [](const JsonValue& v, Draft& d) { rain(d).streak_reach = v.real(); }},
+       {"streak_strength",
+        {a_number(between(0, 100))},
+        "1",
+        "Factor of the opacity of streaks",
+        [](const JsonValue& v, Draft& d) { rain(d).look.streak_strength = v.real(); }},
        {"shown",
         {a_name({"all", "splashes", "streaks", "neither"})},
         "\"all\"",
@@ -243,6 +282,11 @@ const Section& rain_section() {
         "1",
         "Factor of the rings' heights",
         [](const JsonValue& v, Draft& d) { rain(d).ripples.strength = v.real(); }},
+       {"splash_size",
+        {a_number(between(0.1, 10))},
+        "1",
+        "Factor of the lengths of splashes as they are drawn; their water and the ways of their droplets stay",
+        [](const JsonValue& v, Draft& d) { rain(d).splashes.size = v.real(); }},
        {"secondary",
         {a_boolean()},
         "false",

@@ -9,7 +9,9 @@ TEST_F(SceneFileRain, IsReadWhole) {
   const SceneFile scene = read(R"({"rain": {
     "rate_mm_h": 50, "wind": [1, 0, -2], "gust": 0.5, "gust_period": 3, "seed": 9, "start": 1, "duration": 20,
     "rained_mm": 4, "smallest_mm": 0.4, "largest_mm": 5, "share": 0.5, "top": 12, "region": [[4, 3], [-1, -2]],
-    "shutter": 0.02, "streak_reach": 9, "shown": "splashes", "ripples": false, "ripple_step": 0.02,
+    "shutter": 0.02, "streak_reach": 9, "streak_strength": 3, "splash_size": 2, "whole_within": 6,
+    "drops": [{"time": 0.5, "place": [1, 2, 3], "diameter_mm": 4}, {"time": 0.25}],
+    "shown": "splashes", "ripples": false, "ripple_step": 0.02,
     "secondary": true, "bodies": "concrete", "frames": 7, "fps": 30,
     "ground": {"region": [[0, 0], [3, 2]], "cell": 0.05, "level": 0.5, "material": "steel", "ruts": 0.01,
                "slope": 0.02, "roughness": 0.001, "seed": 4}}})");
@@ -22,6 +24,14 @@ TEST_F(SceneFileRain, IsReadWhole) {
   EXPECT_EQ(rain.shown, RainShown::splashes);
   EXPECT_FALSE(rain.with_ripples);
   EXPECT_TRUE(rain.splashes.secondary);
+  EXPECT_EQ(rain.splashes.size, 2);
+  EXPECT_EQ(rain.look.streak_strength, 3);
+  EXPECT_EQ(rain.rain.whole_within, 6);
+  ASSERT_EQ(rain.rain.drops.size(), 2u);
+  EXPECT_EQ(rain.rain.drops[0].time, 0.5);
+  EXPECT_EQ(rain.rain.drops[0].place, vec3(1, 2, 3));
+  EXPECT_FLOAT_EQ(rain.rain.drops[0].diameter, 0.004f);
+  EXPECT_FLOAT_EQ(rain.rain.drops[1].diameter, 0.002f);
   EXPECT_EQ(rain.bodies, GroundMaterial::concrete);
   EXPECT_TRUE(rain.ground.there);
   EXPECT_EQ(rain.ground.cells.material, GroundMaterial::steel);
@@ -38,7 +48,7 @@ TEST_F(SceneFileRain, IsLeftOutUnlessItIsSaid) {
 TEST_F(SceneFileRain, SaysWhereItIsWrong) {
   const std::pair<const char*, const char*> cases[] = {
       {R"({"water": {"waves": {}}, "rain": {"rate": 5}})", "rate_mm_h"},
-      {R"({"water": {"waves": {}}, "rain": {"rate_mm_h": 0}})", "rain.rate_mm_h"},
+      {R"({"water": {"waves": {}}, "rain": {"rate_mm_h": -1}})", "rain.rate_mm_h"},
       {R"({"water": {"waves": {}}, "rain": {"wind": [0, 0]}})", "rain.wind"},
       {R"({"water": {"waves": {}}, "rain": {"shown": "splashs"}})", "splashes"},
       {R"({"water": {"waves": {}}, "rain": {"smallest_mm": 3, "largest_mm": 2}})", "rain"},
