@@ -13,6 +13,7 @@ void add_bench(CLI::App& program) {
   add_bench_simulate(*bench);
   add_bench_tank(*bench);
   add_bench_splash(*bench);
+  add_bench_ground(*bench);
 }
 
 }  // namespace meniscus::apps

@@ -34,6 +34,7 @@ void add_bench_point_sampled(CLI::App& bench);
 void add_bench_simulate(CLI::App& bench);
 void add_bench_tank(CLI::App& bench);
 void add_bench_splash(CLI::App& bench);
+void add_bench_ground(CLI::App& bench);
 void add_compare(CLI::App& program);
 
 }  // namespace meniscus::apps
