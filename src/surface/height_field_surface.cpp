@@ -39,7 +39,7 @@ HeightField checked(HeightField field) {
 class HeightFieldSurface final : public Surface {
  public:
   HeightFieldSurface(HeightField field, bool sides, bool want_thickness)
-      : rays_(checked(std::move(field)), sides), want_thickness_(want_thickness) {}
+      : rays_(checked(std::move(field)), sides), bounds_(rays_.field().bounds()), want_thickness_(want_thickness) {}
 
   SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "march");
@@ -87,7 +87,7 @@ class HeightFieldSurface final : public Surface {
     });
   }
 
-  Bounds bounds() const override { return rays_.field().bounds(); }
+  Bounds bounds() const override { return bounds_; }
 
   const HeightField* height_field() const override { return &rays_.field(); }
 
@@ -212,6 +212,7 @@ class HeightFieldSurface final : public Surface {
   }
 
   HeightFieldRays rays_;
+  Bounds bounds_;  ///< asked for with every batch of rays
   bool want_thickness_;
 };
 
