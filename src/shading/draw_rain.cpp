@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 
 #include "shading/draw_rain_tile.h"
 
@@ -22,6 +23,9 @@ void check(const View& view, const RainLook& look, const Image<float>& depth, co
     throw Error(ErrorCode::invalid_argument, fmt::format("an index of refraction of {} is not from 1 to 4", look.ior));
   if (!(look.pile_opacity >= 0 && look.pile_opacity <= 1))
     throw Error(ErrorCode::invalid_argument, fmt::format("an opacity of {} is not from 0 to 1", look.pile_opacity));
+  if (!(look.streak_strength >= 0) || !std::isfinite(look.streak_strength))
+    throw Error(ErrorCode::invalid_argument,
+                fmt::format("a strength of streaks of {} is negative or not finite", look.streak_strength));
   if (!(look.haze >= 0) || !std::isfinite(look.haze) ||
       !std::isfinite(look.haze_radiance.x + look.haze_radiance.y + look.haze_radiance.z))
     throw Error(ErrorCode::invalid_argument, "the rain's haze is negative or not finite");
@@ -85,18 +89,43 @@ void draw_rain(const View& view, std::span<const WaterPiece> pieces, const Surro
   const int across = (view.width + kRainTile - 1) / kRainTile, down = (view.height + kRainTile - 1) / kRainTile;
   Bins bins = binned(splats, across, down);
   if (bins.keys.empty()) return;
-  Image<vec3> behind;
-  if (splats.looks_behind) behind = radiance;
-  const RainPicture picture{view, pieces, light, look, depth, behind, radiance};
-  parallel_for(static_cast<std::size_t>(across * down), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
+  std::vector<std::size_t> touched;
+  for (std::size_t i = 0; i + 1 < bins.starts.size(); ++i)
+    if (bins.starts[i] < bins.starts[i + 1]) touched.push_back(i);
+  const auto tile_of = [&](std::size_t i) {
+    const int x = static_cast<int>(i) % across * kRainTile, y = static_cast<int>(i) / across * kRainTile;
+    return Tile{
+        x, y, std::min(x + kRainTile, view.width), std::min(y + kRainTile, view.height), &radiance(x, y), view.width};
+  };
+  // While something looks at the picture behind it, tiles are drawn beside the picture.
+  constexpr std::size_t kTileSize = std::size_t{kRainTile} * kRainTile;
+  const std::unique_ptr<vec3[]> beside =
+      splats.looks_behind ? std::make_unique_for_overwrite<vec3[]>(touched.size() * kTileSize) : nullptr;
+  const auto copy = [](const Tile& from, const Tile& to) {
+    for (int y = from.y0; y < from.y1; ++y) std::copy(from.row(y) + from.x0, from.row(y) + from.x1, to.row(y) + to.x0);
+  };
+  const auto tile_beside = [&](const Tile& tile, std::size_t k) {
+    return Tile{tile.x0, tile.y0, tile.x1, tile.y1, beside.get() + k * kTileSize, kRainTile};
+  };
+  const RainPicture picture{view, pieces, light, look, depth, radiance};
+  parallel_for(touched.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t i = touched[k];
       const auto first = bins.keys.begin() + static_cast<std::ptrdiff_t>(bins.starts[i]);
       const auto last = bins.keys.begin() + static_cast<std::ptrdiff_t>(bins.starts[i + 1]);
       std::sort(first, last);
-      const int x = static_cast<int>(i) % across * kRainTile, y = static_cast<int>(i) / across * kRainTile;
-      const Tile tile{x, y, std::min(x + kRainTile, view.width), std::min(y + kRainTile, view.height)};
+      Tile tile = tile_of(i);
+      if (beside) {
+        const Tile other = tile_beside(tile, k);
+        copy(tile, other);
+        tile = other;
+      }
       for (auto key = first; key != last; ++key) draw_splat(picture, tile, splats.splats[*key & 0xffffffffu]);
     }
+  });
+  if (!beside) return;
+  parallel_for(touched.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) copy(tile_beside(tile_of(touched[k]), k), tile_of(touched[k]));
   });
 }
 

@@ -48,7 +48,7 @@ vec3 refracted_light(const RainPicture& picture, vec3 point, vec3 exit, float st
                      float cone) {
   const vec3 around = picture.light.parts().radiance(exit, cone);
   float in_picture = glm::smoothstep(0.7f, 0.95f, straight);
-  if (!(in_picture > 0) || picture.behind.empty()) return around;
+  if (!(in_picture > 0)) return around;
   const float beyond = std::isfinite(behind) ? std::max(behind - t, 0.0f) : 1e5f;
   const vec3 place = picture.view.project(point + beyond * exit);
   if (!(place.z > 0)) return around;
@@ -139,7 +139,7 @@ void draw_ball(const RainPicture& picture, const Tile& tile, const Splat& splat)
         colour /= covered;
         covered /= static_cast<float>(fine * fine);
       }
-      blend(picture.radiance(x, y), colour, splat.alpha * covered * visible_part(picture.depth, x, y, t, splat.soft));
+      blend(tile.row(y)[x], colour, splat.alpha * covered * visible_part(picture.depth, x, y, t, splat.soft));
     }
 }
 
@@ -277,7 +277,7 @@ void draw_pyramid(const RainPicture& picture, const Tile& tile, const Splat& spl
                   (1.0f - body.mirrored) * (through + kScattered * (picture.light.parts().mean - through));
       if (picture.light.has_lamps())
         seen += picture.light.glare(body, point, std::max(10 * kLeastVariance, 0.5f * cone * cone));
-      blend(picture.radiance(x, y), seen,
+      blend(tile.row(y)[x], seen,
             splat.alpha * std::min(covered, 1.0f) * visible_part(picture.depth, x, y, t, splat.soft));
     }
 }
@@ -322,13 +322,12 @@ void draw_disk(const RainPicture& picture, const Tile& tile, const Splat& splat)
       const float cos_i = std::max(0.0f, -glm::dot(ray.direction, tilted));
       const vec3 mirror = glm::normalize(formulas::mirrored(ray.direction, tilted));
       const float mirrored = formulas::fresnel_reflectance(cos_i, picture.look.ior);
-      const vec3 below = picture.behind.empty() ? picture.radiance(x, y) : picture.behind(x, y);
+      const vec3 below = picture.behind(x, y);
       const vec3 around = picture.light.parts().radiance(-mirror, 0.9f);
       vec3 seen = mirrored * picture.light.parts().radiance(mirror, 0.03f) +
                   (1.0f - mirrored) * (below + 0.4f * rim * (around - below));
       if (picture.light.has_lamps()) seen += mirrored * picture.light.glare({mirror, mirror, 1, 0}, piece.from, 3e-3f);
-      blend(picture.radiance(x, y), seen,
-            splat.alpha * covered * visible_part(picture.depth, x, y, splat.t0, splat.soft));
+      blend(tile.row(y)[x], seen, splat.alpha * covered * visible_part(picture.depth, x, y, splat.t0, splat.soft));
     }
 }
 

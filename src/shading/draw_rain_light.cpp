@@ -18,6 +18,17 @@ constexpr float kScattered = 0.2f;
 constexpr float kJetCone = 0.3f;
 /// Radians between the points of a ball that its mean is taken from, as their rays go apart.
 constexpr float kBallCone = 0.12f;
+/// The turn of a line, [0, 1], counter-clockwise with y upwards: along the edge of a diamond, without trigonometry.
+float turn_of(vec2 axis) {
+  if (axis.y < 0) axis = -axis;
+  const float size = std::abs(axis.x) + axis.y;
+  return size > 0 ? 0.5f - 0.5f * axis.x / size : 0.5f;
+}
+/// The unit vector with this turn.
+vec2 axis_at(float turn) {
+  const float x = 1.0f - 2.0f * turn;
+  return glm::normalize(vec2{x, 1.0f - std::abs(x)});
+}
 /// Sun and lamps in the mean over a body, in radiances of a white ground.
 constexpr float kBrightestLamps = 12.0f;
 
@@ -67,7 +78,7 @@ RainLight::RainLight(const View& view, const Surroundings& surroundings, float i
       width_(static_cast<float>(view.width)),
       height_(static_cast<float>(view.height)),
       nodes_(static_cast<std::size_t>(kColumns * kRows)) {
-  constexpr int kPoints = 96, kAcross = 8;
+  constexpr int kPoints = 64, kAcross = 8;
   // Points of a disc of equal areas, on a spiral.
   std::array<vec3, kPoints> disc;  // x, y and the cosine of incidence
   for (int k = 0; k < kPoints; ++k) {
@@ -91,8 +102,8 @@ RainLight::RainLight(const View& view, const Surroundings& surroundings, float i
                      static_cast<float>(kPoints);
       }
       for (int a = 0; a < kAngles; ++a) {
-        const float angle = kPi * static_cast<float>(a) / kAngles;
-        const vec3 side = -std::sin(angle) * right + std::cos(angle) * up;  // across the axis
+        const vec2 axis = axis_at(static_cast<float>(a) / kAngles);
+        const vec3 side = -axis.y * right + axis.x * up;  // across the axis
         vec3 sum{0.0f};
         for (int k = 0; k < kAcross; ++k) {
           const float s = (2.0f * static_cast<float>(k) + 1.0f) / kAcross - 1.0f;
@@ -124,12 +135,10 @@ vec3 RainLight::ball(vec2 place) const {
 }
 
 vec3 RainLight::jet(vec2 place, vec2 axis) const {
-  // The angle of a line, [0, pi), counter-clockwise with y upwards.
-  float turn = std::atan2(-axis.y, axis.x) / kPi;
-  turn -= std::floor(turn);
-  const float x = turn * kAngles;
-  const std::size_t a = static_cast<std::size_t>(x) % kAngles, b = (a + 1) % kAngles;
-  const float t = x - std::floor(x);
+  const float x = turn_of({axis.x, -axis.y}) * kAngles;
+  const auto whole = static_cast<std::size_t>(x);
+  const std::size_t a = whole % kAngles, b = (whole + 1) % kAngles;
+  const float t = x - static_cast<float>(whole);
   vec3 sum{0.0f};
   for (const Corner& corner : corners(place)) {
     const Node& node = nodes_[corner.node];

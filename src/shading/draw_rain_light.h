@@ -72,7 +72,7 @@ class RainLight {
   vec3 glare(const BodyRays& body, vec3 point, float variance) const;
 
  private:
-  static constexpr int kColumns = 9, kRows = 7, kAngles = 8;
+  static constexpr int kColumns = 7, kRows = 5, kAngles = 8;
   struct Node {
     vec3 ball{0.0f};
     std::array<vec3, kAngles> jets{};

@@ -12,13 +12,16 @@ struct RainPicture {
   const RainLight& light;
   const RainLook& look;
   const Image<float>& depth;  ///< m along the rays
-  const Image<vec3>& behind;  ///< the picture without pieces; empty if no splat looks at it
-  Image<vec3>& radiance;
+  const Image<vec3>& behind;  ///< the picture without pieces
 };
 
-/// Pixels of a tile, without x1 and y1.
+/// Pixels of a tile, without x1 and y1, and where their radiances stand.
 struct Tile {
   int x0, y0, x1, y1;
+  vec3* pixels;           ///< of (x0, y0)
+  std::ptrdiff_t stride;  ///< from row to row
+  /// To be indexed by the picture's x.
+  vec3* row(int y) const { return pixels + (y - y0) * stride - x0; }
 };
 
 /// How much of a piece at the distance t is before what is solid at a pixel: half where both are at one place, soft
