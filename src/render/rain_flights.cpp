@@ -10,7 +10,11 @@
 namespace meniscus {
 namespace {
 
-constexpr float kOnPlane = 1e-3f;  ///< m from the ground's plane that count as on it
+constexpr float kOnPlane = 1e-3f;       ///< m from the ground's plane that count as on it
+constexpr std::size_t kTogether = 512;  ///< drops of one piece of parallel work
+constexpr std::size_t kListsTogether = 2;
+constexpr float kOffUniform = 0.01f;  ///< m that a drop in even wind may be lower than its mean fall tells
+constexpr float kOff = 1;             ///< and in wind that is not the same everywhere
 
 /// One straight part of a drop's way.
 struct Leg {
@@ -50,6 +54,20 @@ bool overlap(const Bounds& a, const Bounds& b) {
   return true;
 }
 
+/// Moves the members at `places`, in rising order, to the end of `taken`; the others stay in their order.
+void take_out(std::vector<Flight>& list, std::span<const std::size_t> places, std::vector<Flight>& taken) {
+  if (places.empty()) return;
+  std::size_t to = places.front(), next = 0;
+  for (std::size_t i = to; i < list.size(); ++i)
+    if (next < places.size() && places[next] == i) {
+      taken.push_back(list[i]);
+      ++next;
+    } else {
+      list[to++] = list[i];
+    }
+  list.resize(to);
+}
+
 }  // namespace
 
 Flights::Flights(const Rain& rain, const WetGround* ground, double tick)
@@ -87,6 +105,7 @@ void Flights::put(const Flight& flight) {
   const auto list = static_cast<std::size_t>(std::max<std::int64_t>(tick - next_, 0));
   if (list >= lists_.size()) lists_.resize(list + 1);
   lists_[list].push_back(flight);
+  slowest_ = std::min(slowest_, flight.fall);
 }
 
 void Flights::fall_onto_ground(Flight& flight, double from) const {
@@ -114,6 +133,12 @@ void Flights::fall_onto_ground(Flight& flight, double from) const {
 }
 
 void Flights::find_targets(std::span<Flight> flights, double from, const Scene& scene) const {
+  parallel_for(flights.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+    find_targets_of_piece(flights.subspan(begin, end - begin), from, scene);
+  });
+}
+
+void Flights::find_targets_of_piece(std::span<Flight> flights, double from, const Scene& scene) const {
   std::vector<Leg> legs;
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < flights.size(); ++i) {
@@ -135,10 +160,7 @@ void Flights::find_targets(std::span<Flight> flights, double from, const Scene& 
     }
   }
   std::vector<SolidHit> hits(rays.size());
-  constexpr std::size_t kBatch = 4096;
-  parallel_for(rays.size(), kBatch, [&](std::size_t begin, std::size_t end) {
-    scene.hits(std::span(rays).subspan(begin, end - begin), {}, std::span(hits).subspan(begin, end - begin));
-  });
+  scene.hits(rays, {}, hits);
   for (std::size_t i = legs.size(); i-- > 0;) {  // the first leg that meets something wins
     const Leg& leg = legs[i];
     // The last leg ends at the level, which may be the plane itself.
@@ -153,9 +175,7 @@ void Flights::find_targets(std::span<Flight> flights, double from, const Scene& 
     flight.target = on_plane ? Flight::Target::plane : Flight::Target::body;
   }
   if (!ground_) return;
-  parallel_for(flights.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) fall_onto_ground(flights[i], from);
-  });
+  for (Flight& flight : flights) fall_onto_ground(flight, from);
 }
 
 void Flights::come_in(double from, double until, const Scene& scene) {
@@ -170,15 +190,17 @@ void Flights::meet_changed_scene(double now, const Scene& scene) {
   const Bounds box = changed(solids_, scene.solids()).grown(1e-3f);
   solids_ = scene.solids();
   if (box.empty()) return;
+  std::vector<std::vector<std::size_t>> touched(lists_.size());
+  parallel_for(lists_.size(), kListsTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      for (std::size_t i = 0; i < lists_[k].size(); ++i) {
+        Bounds way;
+        for (const vec3 point : rain_.way(lists_[k][i].drop).points) way.add(point);
+        if (overlap(way, box)) touched[k].push_back(i);
+      }
+  });
   std::vector<Flight> again;
-  for (auto& list : lists_)
-    std::erase_if(list, [&](const Flight& flight) {
-      Bounds way;
-      for (const vec3 point : rain_.way(flight.drop).points) way.add(point);
-      if (!overlap(way, box)) return false;
-      again.push_back(flight);
-      return true;
-    });
+  for (std::size_t k = 0; k < lists_.size(); ++k) take_out(lists_[k], touched[k], again);
   find_targets(again, now, scene);
   for (const Flight& flight : again) put(flight);
 }
@@ -186,51 +208,54 @@ void Flights::meet_changed_scene(double now, const Scene& scene) {
 void Flights::meet_water(double from, double until, const Surface& water, std::vector<Flight>& due) {
   const Bounds box = water.bounds().grown(1e-3f);
   if (box.empty()) return;
-  struct Place {
-    std::size_t list, index;
-  };
-  std::vector<Place> places;
-  std::vector<Ray> rays;
-  std::vector<float> starts, lengths;
-  for (std::size_t k = 0; k < lists_.size(); ++k)
-    for (std::size_t i = 0; i < lists_[k].size(); ++i) {
-      const Flight& flight = lists_[k][i];
-      const float above = static_cast<float>(flight.drop.time - until) * flight.fall + rain_.options().level;
-      if (above > box.high[up_] + 1) continue;
-      const vec3 start = rain_.position(flight.drop, from);
-      const vec3 end = rain_.position(flight.drop, std::min(until, flight.hit));
-      Bounds way;
-      way.add(start);
-      way.add(end);
-      if (!overlap(way, box)) continue;
-      const float length = glm::distance(start, end);
-      if (!(length > 0)) continue;
-      places.push_back({k, i});
-      rays.push_back({start, (end - start) / length});
-      starts.push_back(0);
-      lengths.push_back(length);
-    }
-  std::vector<Crossing> found(rays.size());
-  const std::vector<std::uint8_t> outside(rays.size(), 0);
-  constexpr std::size_t kBatch = 256;
-  parallel_for(rays.size(), kBatch, [&](std::size_t begin, std::size_t end) {
-    const std::size_t count = end - begin;
-    water.crossings(std::span(rays).subspan(begin, count), std::span(starts).subspan(begin, count),
-                    std::span(lengths).subspan(begin, count), std::span(outside).subspan(begin, count),
-                    std::span(found).subspan(begin, count));
+  // What is not below this height at the end of the tick has not met the water; neither have the drops of lists that
+  // are due so late that the slowest of them would be above it.
+  const float level = rain_.options().level;
+  const float height = box.high[up_] + (rain_.wind().uniform() ? kOffUniform : kOff);
+  const double seconds = static_cast<double>((height - level) / std::max(slowest_, 1e-3f));
+  const auto reach = static_cast<std::size_t>(std::clamp(std::ceil(seconds / tick_) + 2, 0.0, 1e9));
+  const std::size_t lists = std::min(lists_.size(), reach);
+  std::vector<std::vector<std::size_t>> met(lists);
+  parallel_for(lists, kListsTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) meet_water(from, until, height, box, water, lists_[k], met[k]);
   });
-  for (std::size_t n = rays.size(); n-- > 0;) {  // backwards, so that places stay right
+  for (std::size_t k = 0; k < lists; ++k) take_out(lists_[k], met[k], due);
+}
+
+void Flights::meet_water(double from, double until, float height, const Bounds& box, const Surface& water,
+                         std::vector<Flight>& list, std::vector<std::size_t>& met) const {
+  std::vector<std::size_t> places;
+  std::vector<Ray> rays;
+  std::vector<float> lengths;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Flight& flight = list[i];
+    if (static_cast<float>(flight.drop.time - until) * flight.fall + rain_.options().level > height) continue;
+    const vec3 start = rain_.position(flight.drop, from);
+    const vec3 end = rain_.position(flight.drop, std::min(until, flight.hit));
+    Bounds way;
+    way.add(start);
+    way.add(end);
+    if (!overlap(way, box)) continue;
+    const float length = glm::distance(start, end);
+    if (!(length > 0)) continue;
+    places.push_back(i);
+    rays.push_back({start, (end - start) / length});
+    lengths.push_back(length);
+  }
+  if (rays.empty()) return;
+  const std::vector<float> starts(rays.size(), 0.0f);
+  const std::vector<std::uint8_t> outside(rays.size(), 0);
+  std::vector<Crossing> found(rays.size());
+  water.crossings(rays, starts, lengths, outside, found);
+  for (std::size_t n = 0; n < rays.size(); ++n) {
     if (!std::isfinite(found[n].distance)) continue;
-    std::vector<Flight>& list = lists_[places[n].list];
-    const auto place = list.begin() + static_cast<std::ptrdiff_t>(places[n].index);
-    Flight flight = *place;
-    list.erase(place);
+    Flight& flight = list[places[n]];
     const double end = std::min(until, flight.hit);
     flight.hit = from + (end - from) * static_cast<double>(found[n].distance / lengths[n]);
     flight.point = rays[n].origin + found[n].distance * rays[n].direction;
     flight.normal = found[n].normal;
     flight.target = Flight::Target::water;
-    due.push_back(flight);
+    met.push_back(places[n]);
   }
 }
 

@@ -46,9 +46,14 @@ class Flights {
  private:
   void come_in(double from, double until, const Scene& scene);
   void find_targets(std::span<Flight> flights, double from, const Scene& scene) const;
+  void find_targets_of_piece(std::span<Flight> flights, double from, const Scene& scene) const;
   void fall_onto_ground(Flight& flight, double from) const;
   void meet_changed_scene(double now, const Scene& scene);
   void meet_water(double from, double until, const Surface& water, std::vector<Flight>& due);
+  /// Of one list: where in it drops have met the water.
+  /// @param height  m along up, above which no drop is looked at
+  void meet_water(double from, double until, float height, const Bounds& box, const Surface& water,
+                  std::vector<Flight>& list, std::vector<std::size_t>& met) const;
   void put(const Flight& flight);
   float height_of(vec3 point) const { return point[up_]; }
 
@@ -56,9 +61,10 @@ class Flights {
   const WetGround* ground_;
   double tick_;
   int up_;
-  double lead_ = 0;        ///< s that the slowest drop takes from the top down
-  float highest_ = 0;      ///< m, of the ground's cells
-  std::int64_t next_ = 0;  ///< tick of the first list
+  double lead_ = 0;                                         ///< s that the slowest drop takes from the top down
+  float highest_ = 0;                                       ///< m, of the ground's cells
+  float slowest_ = std::numeric_limits<float>::infinity();  ///< m/s, of all flights so far
+  std::int64_t next_ = 0;                                   ///< tick of the first list
   bool started_ = false;
   std::deque<std::vector<Flight>> lists_;  ///< one a tick
   std::vector<PlacedSolid> solids_;        ///< that targets were found with

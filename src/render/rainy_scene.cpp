@@ -8,6 +8,7 @@
 #include "base/field_axes.h"
 #include "base/random.h"
 #include "meniscus/render.h"
+#include "render/rain_depths.h"
 #include "render/rain_flights.h"
 #include "render/rain_ground.h"
 #include "render/rain_puddles.h"
@@ -18,9 +19,11 @@ namespace {
 
 /// s: everything happens in ticks of this length, whatever the film's frames are.
 constexpr double kTick = 0.01;
-constexpr int kTicksOfFlow = 4;     ///< water runs every so many ticks
-constexpr int kTicksOfDepths = 25;  ///< and ripples are told how deep it is
-constexpr double kLongest = 86400;  ///< s that may be gone on at once
+constexpr int kTicksOfFlow = 4;        ///< water runs every so many ticks
+constexpr int kTicksOfDepths = 25;     ///< and ripples are told how deep it is
+constexpr int kTicksOfRetiring = 16;   ///< and splashes that are over are forgotten
+constexpr std::size_t kImpacts = 256;  ///< of one piece of parallel work
+constexpr double kLongest = 86400;     ///< s that may be gone on at once
 /// s of rain before a film that begins on wet ground, so that splashes and rings are there in its first picture.
 constexpr double kBefore = 1;
 constexpr double kSoonWet = 1;         ///< s of rain after which bodies count as wet
@@ -105,7 +108,7 @@ struct RainyScene::Parts {
 
   void one_tick(const Scene& scene, const Surface* water) {
     const double from = static_cast<double>(tick) * kTick, until = static_cast<double>(tick + 1) * kTick;
-    for (const Flight& flight : flights->hits(tick, scene, water)) hit(flight);
+    hit(flights->hits(tick, scene, water));
     land(from, until);
     ++tick;
     if (ground && tick % kTicksOfFlow == 0) ground->flow(kTick * kTicksOfFlow);
@@ -114,14 +117,46 @@ struct RainyScene::Parts {
       rings_on_ground->advance(kTick);
     }
     if (rings_on_water) rings_on_water->advance(kTick);
-    // A picture may be of any time in this tick: what is over at its beginning is not seen.
-    on_cells.retire(from);
-    elsewhere.retire(from);
+    if (tick % kTicksOfRetiring == 0) retire();
   }
 
-  void hit(const Flight& flight) {
-    if (flight.target == Flight::Target::nothing) return;
-    ++hits;
+  /// A picture may be of any time in the last tick: what was over at its beginning is not seen.
+  void retire() {
+    const double over = static_cast<double>(tick - 1) * kTick;
+    on_cells.retire(over);
+    elsewhere.retire(over);
+  }
+
+  /// The drops of a tick, in order of time. How wet the ground is counts as it was when the tick began.
+  void hit(std::vector<Flight> flights_of_tick) {
+    std::erase_if(flights_of_tick, [](const Flight& flight) { return flight.target == Flight::Target::nothing; });
+    hits += flights_of_tick.size();
+    const auto middle = std::stable_partition(flights_of_tick.begin(), flights_of_tick.end(), [](const Flight& flight) {
+      return flight.target == Flight::Target::ground;
+    });
+    const std::span<const Flight> drops(flights_of_tick);
+    const auto on_ground = static_cast<std::size_t>(middle - flights_of_tick.begin());
+    std::vector<Impact> impacts(drops.size());
+    parallel_for(drops.size(), kImpacts, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) impacts[i] = impact_of(drops[i]);
+    });
+    std::vector<double> flies(drops.size());
+    on_cells.add(std::span(impacts).first(on_ground), std::span(flies).first(on_ground));
+    elsewhere.add(std::span(impacts).subspan(on_ground), std::span(flies).subspan(on_ground));
+    for (std::size_t i = 0; i < on_ground; ++i) {
+      const std::size_t cell = drops[i].cell;
+      const double brought = rain.volume(drops[i].drop) * with_mist;
+      in_air += flies[i];
+      ground->add(cell, std::max(brought - flies[i], 0.0));
+      fallen += std::max(brought, flies[i]);
+      if (rings_on_ground && ground->depth(cell) > kPuddle) ring(*rings_on_ground, impacts[i]);
+    }
+    if (rings_on_water)
+      for (std::size_t i = on_ground; i < drops.size(); ++i)
+        if (drops[i].target == Flight::Target::water) ring(*rings_on_water, impacts[i]);
+  }
+
+  Impact impact_of(const Flight& flight) const {
     Impact impact;
     impact.id = flight.drop.id;
     impact.time = flight.hit;
@@ -130,41 +165,33 @@ struct RainyScene::Parts {
     impact.velocity = rain.velocity(flight.drop, flight.hit);
     impact.diameter = flight.drop.diameter;
     impact.wind = rain.wind().at(flight.point, flight.hit);
-    const float down = std::max(0.0f, -glm::dot(impact.velocity, up));
     switch (flight.target) {
-      case Flight::Target::ground: {
+      case Flight::Target::ground:
         impact.material = ground->material(flight.cell);
         impact.wetness = ground->wetness(flight.cell);
         impact.point += static_cast<float>(ground->depth(flight.cell)) * up;
-        const double brought = rain.volume(flight.drop) * with_mist;
-        const double flies = on_cells.add(impact);
-        in_air += flies;
-        ground->add(flight.cell, std::max(brought - flies, 0.0));
-        fallen += std::max(brought, flies);
-        if (rings_on_ground && ground->depth(flight.cell) > kPuddle)
-          rings_on_ground->hit(impact.point, impact.diameter, down);
         break;
-      }
       case Flight::Target::water:
         impact.wetness = Wetness::puddle_10mm;
-        elsewhere.add(impact);
-        if (rings_on_water) rings_on_water->hit(impact.point, impact.diameter, down);
         break;
       case Flight::Target::plane:
         impact.material = settings.ground.cells.material;
         impact.wetness = Wetness::wet;
-        elsewhere.add(impact);
         break;
       case Flight::Target::body: {
         const bool wet = settings.rained_mm > 0 || flight.hit > rain.options().start + kSoonWet;
         impact.material = settings.bodies;
         impact.wetness = wet ? Wetness::wet : Wetness::dry;
-        elsewhere.add(impact);
         break;
       }
       case Flight::Target::nothing:
         break;
     }
+    return impact;
+  }
+
+  void ring(Ripples& ripples, const Impact& impact) const {
+    ripples.hit(impact.point, impact.diameter, std::max(0.0f, -glm::dot(impact.velocity, up)));
   }
 
   /// Droplets of splashes come down.
@@ -245,11 +272,11 @@ void RainyScene::advance(double time, const Scene& scene, const Surface* water, 
   if (deep && parts.settings.with_ripples && !parts.rings_on_water) {
     const Bounds where = parts.settings.water.empty() ? deep->bounds() : parts.settings.water;
     parts.rings_on_water.emplace(on_water(parts.settings.ripples, parts.rain.options().up, where));
-    const std::size_t points = static_cast<std::size_t>(parts.rings_on_water->width()) *
-                               static_cast<std::size_t>(parts.rings_on_water->height());
-    parts.rings_on_water->set_depths(std::vector<float>(points, kDeep));
+    parts.rings_on_water->set_depths(water_depths(*parts.rings_on_water, *deep, scene, kDeep));
   }
+  const std::int64_t before = parts.tick;
   while (static_cast<double>(parts.tick) * kTick < time) parts.one_tick(scene, deep);
+  if (parts.tick > before) parts.retire();
 }
 
 WaterBudget RainyScene::budget() const {

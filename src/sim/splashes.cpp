@@ -12,7 +12,8 @@
 namespace meniscus {
 namespace {
 
-constexpr std::size_t kPiece = 256;  ///< splashes in a piece of parallel work
+// Of a piece of parallel work: splashes that are drawn, that may have landings, impacts.
+constexpr std::size_t kPiece = 256, kSplashes = 4096, kImpacts = 64;
 /// Most shapes of one splash: a pile and a droplet each, a cone and its drop.
 constexpr std::size_t kMostShapes = 2 * (kMostDroplets + 1);
 
@@ -72,33 +73,62 @@ Landing landing_of(const Splash& splash, const Droplet& droplet, const SplashOpt
 
 Splashes::Splashes(const SplashOptions& options) : options_(options) { check(options); }
 
-double Splashes::add(const Impact& given) {
-  check(given);
-  Impact impact = given;
-  impact.normal = glm::normalize(impact.normal);
-  const Splash splash = make_splash(impact, options_, droplets_);
-  if (splash.kind == SplashKind::none) return 0;
-  splashes_.push_back(splash);
-  flying_ += splash.count;
-  double volume = 0;
-  for (std::size_t i = splash.first; i < droplets_.size(); ++i) volume += volume_of(droplets_[i]);
-  return volume;
+double Splashes::add(const Impact& impact) {
+  double flies = 0;
+  add({&impact, 1}, {&flies, 1});
+  return flies;
+}
+
+void Splashes::add(std::span<const Impact> impacts, std::span<double> flies) {
+  if (impacts.size() != flies.size())
+    throw Error(ErrorCode::invalid_argument, "the lists of impacts and of what flies from them differ in length");
+  for (const Impact& impact : impacts) check(impact);
+  // Each piece makes its own; they are put one behind the other.
+  struct Made {
+    std::vector<Splash> splashes;
+    std::vector<Droplet> droplets;
+  };
+  std::vector<Made> pieces((impacts.size() + kImpacts - 1) / kImpacts);
+  parallel_for(impacts.size(), kImpacts, [&](std::size_t begin, std::size_t end) {
+    Made& made = pieces[begin / kImpacts];
+    for (std::size_t i = begin; i < end; ++i) {
+      Impact impact = impacts[i];
+      impact.normal = glm::normalize(impact.normal);
+      const Splash splash = make_splash(impact, options_, made.droplets);
+      flies[i] = 0;
+      if (splash.kind == SplashKind::none) continue;
+      made.splashes.push_back(splash);
+      for (std::size_t d = splash.first; d < made.droplets.size(); ++d) flies[i] += volume_of(made.droplets[d]);
+    }
+  });
+  for (Made& made : pieces) {
+    for (Splash& splash : made.splashes) splash.first += droplets_.size();
+    splashes_.insert(splashes_.end(), made.splashes.begin(), made.splashes.end());
+    droplets_.insert(droplets_.end(), made.droplets.begin(), made.droplets.end());
+    flying_ += made.droplets.size();
+  }
 }
 
 std::vector<Landing> Splashes::landings(double from, double until) const {
+  std::vector<std::vector<Landing>> pieces((splashes_.size() + kSplashes - 1) / kSplashes);
+  parallel_for(splashes_.size(), kSplashes, [&](std::size_t piece_begin, std::size_t piece_end) {
+    std::vector<Landing>& found = pieces[piece_begin / kSplashes];
+    for (std::size_t i = piece_begin; i < piece_end; ++i) {
+      const Splash& splash = splashes_[i];
+      const double start = splash.impact.time;
+      if (splash.count == 0 || start > until || start + splash.ends <= from) continue;
+      const auto time_of = [&](const Droplet& droplet) { return start + droplet.lands; };
+      // Of a crown-cone only the first droplet flies; the others are its crown.
+      const std::size_t flying = splash.kind == SplashKind::crown_cone ? 1 : splash.count;
+      const auto begin = droplets_.begin() + static_cast<std::ptrdiff_t>(splash.first);
+      const auto end = begin + static_cast<std::ptrdiff_t>(flying);
+      auto droplet = std::upper_bound(begin, end, from, [&](double t, const Droplet& d) { return t < time_of(d); });
+      for (; droplet != end && time_of(*droplet) <= until; ++droplet)
+        found.push_back(landing_of(splash, *droplet, options_));
+    }
+  });
   std::vector<Landing> landings;
-  for (const Splash& splash : splashes_) {
-    const double start = splash.impact.time;
-    if (splash.count == 0 || start > until || start + splash.ends <= from) continue;
-    const auto time_of = [&](const Droplet& droplet) { return start + droplet.lands; };
-    // Of a crown-cone only the first droplet flies; the others are its crown.
-    const std::size_t flying = splash.kind == SplashKind::crown_cone ? 1 : splash.count;
-    const auto begin = droplets_.begin() + static_cast<std::ptrdiff_t>(splash.first);
-    const auto end = begin + static_cast<std::ptrdiff_t>(flying);
-    auto droplet = std::upper_bound(begin, end, from, [&](double t, const Droplet& d) { return t < time_of(d); });
-    for (; droplet != end && time_of(*droplet) <= until; ++droplet)
-      landings.push_back(landing_of(splash, *droplet, options_));
-  }
+  for (const auto& piece : pieces) landings.insert(landings.end(), piece.begin(), piece.end());
   std::stable_sort(landings.begin(), landings.end(),
                    [](const Landing& a, const Landing& b) { return a.time < b.time; });
   return landings;
