@@ -21,14 +21,16 @@ constexpr float kCircleWet = 0.75f, kCircle3mm = 1.0f, kCircle5mm = 1.5f;  ///< 
 constexpr float kCircleCrown = 2.0f;                                       ///< and of a crown
 constexpr float kDisk = 1.5f;                                              ///< radius of the disk
 constexpr float kWidest = 0.4f;                                            ///< half a diagonal of a pile's base at most
-constexpr float kCrownLowest = 50, kCrownHighest = 80, kCrownAngle = 65, kCrownAngleSigma = 5;  ///< degrees
-constexpr float kCrownSpeed = 0.08f;       ///< of the crown's tips, over the drop's speed against the surface
+// The walls of a crown stand steep and rise by two to three diameters of the drop.
+constexpr float kCrownLowest = 66, kCrownHighest = 86, kCrownAngle = 76, kCrownAngleSigma = 3;  ///< degrees
+constexpr float kCrownSpeed = 0.055f;      ///< of the crown's tips, over the drop's speed against the surface
 constexpr float kCrownSpeedSigma = 0.08f;  ///< over the mean
-constexpr float kCrownPart = 0.25f;        ///< of the longest time of a splash, that a crown may take
-constexpr float kCrownTip = 0.125f;        ///< radius of what the air brakes at a crown's tip
-constexpr float kJitter = 0.25f;           ///< standard deviation of the azimuth, over the angle between two piles
-constexpr float kJitterMost = 0.35f;       ///< rad
-constexpr float kUneven = 0.5f;            ///< standard deviation of the logarithm of the droplets' volumes
+constexpr float kCrownWidth = 0.8f;  ///< half a diagonal of its piles' bases, over the way from one to the next: a wall
+constexpr float kCrownPart = 0.25f;  ///< of the longest time of a splash, that a crown may take
+constexpr float kCrownTip = 0.3f;    ///< radius of what the air brakes at a crown's tip
+constexpr float kJitter = 0.25f;     ///< standard deviation of the azimuth, over the angle between two piles
+constexpr float kJitterMost = 0.35f;  ///< rad
+constexpr float kUneven = 0.5f;       ///< standard deviation of the logarithm of the droplets' volumes
 
 struct Frame {
   vec3 normal, x, y;  ///< orthonormal
@@ -54,8 +56,9 @@ float circle_of(const Impact& impact, SplashKind kind) {
 
 /// The piles of a splash stand evenly on its circle, from anywhere on, and lean a little to the sides.
 /// @param speed, elevation  m/s and radians, of this pile
+/// @param carried           part of the drop's velocity along the surface that it takes over
 Droplet pile(const Impact& impact, const Frame& frame, float circle, double azimuth, double jitter, double speed,
-             double elevation) {
+             double elevation, float carried) {
   const auto on_circle = [&](double angle) {
     return frame.x * static_cast<float>(std::cos(angle)) + frame.y * static_cast<float>(std::sin(angle));
   };
@@ -63,7 +66,7 @@ Droplet pile(const Impact& impact, const Frame& frame, float circle, double azim
   Droplet droplet;
   droplet.start = impact.point + on_circle(azimuth) * circle;
   droplet.velocity = on_circle(azimuth + jitter) * static_cast<float>(speed * std::cos(elevation)) +
-                     frame.normal * static_cast<float>(speed * std::sin(elevation)) + along * kCarried;
+                     frame.normal * static_cast<float>(speed * std::sin(elevation)) + along * carried;
   return droplet;
 }
 
@@ -89,8 +92,8 @@ void scatter(Splash& splash, const SplashOptions& options, Draws& draws, std::ve
   for (int i = 0; i < number; ++i) {
     const double speed = normal_within(draws, r.speed_mean, r.speed_sigma, r.slowest, r.fastest);
     const double angle = normal_within(draws, r.angle_mean_deg, r.angle_sigma_deg, r.lowest_deg, r.highest_deg);
-    droplets.push_back(
-        pile(impact, frame, splash.circle, first + between * i, jitter * draws.normal(), speed, angle * kPi / 180));
+    droplets.push_back(pile(impact, frame, splash.circle, first + between * i, jitter * draws.normal(), speed,
+                            angle * kPi / 180, kCarried));
     sum += volumes[static_cast<std::size_t>(i)] = std::exp(kUneven * draws.normal());
   }
   const double drop = kPi / 6 * std::pow(static_cast<double>(impact.diameter), 3);
@@ -123,13 +126,13 @@ void crown_and_cone(Splash& splash, const SplashOptions& options, Draws& draws, 
   const SplashRanges r = splash_ranges(impact.material, impact.wetness, size);
   const int number = number_within(draws, many.number_mean, many.number_sigma, many.fewest, many.most);
   const double between = 2 * kPi / number, first = 2 * kPi * draws.uniform();
-  splash.width = std::min(kWidest * options.size * impact.diameter, 0.5f * splash.circle * static_cast<float>(between));
+  splash.width = kCrownWidth * splash.circle * static_cast<float>(between);
   const double against = std::abs(glm::dot(impact.velocity, impact.normal));
   const double mean = std::clamp<double>(kCrownSpeed * against, r.slowest, r.fastest);
   for (int i = 0; i < number; ++i) {
     const double speed = normal_within(draws, mean, kCrownSpeedSigma * mean, r.slowest, r.fastest);
     const double angle = normal_within(draws, kCrownAngle, kCrownAngleSigma, kCrownLowest, kCrownHighest);
-    Droplet tip = pile(impact, frame, splash.circle, first + between * i, 0, speed, angle * kPi / 180);
+    Droplet tip = pile(impact, frame, splash.circle, first + between * i, 0, speed, angle * kPi / 180, kCarriedByCrown);
     fly(tip, kCrownTip * impact.diameter, impact.wind, impact.normal, options.gravity, kCrownPart * options.most_time);
     tip.leaves = tip.lands;
     splash.cone_starts = std::max(splash.cone_starts, tip.lands);
@@ -192,7 +195,7 @@ void bound(Splash& splash, const SplashOptions& options, std::span<const Droplet
 float flying_share(SplashKind kind, Wetness wetness) {
   if (kind == SplashKind::crown_cone) return 0.3f;
   if (kind != SplashKind::scattering) return 0;
-  return wetness == Wetness::wet ? 0.1f : wetness == Wetness::puddle_3mm ? 0.25f : 0.4f;
+  return wetness == Wetness::wet ? 0.3f : wetness == Wetness::puddle_3mm ? 0.6f : 0.9f;
 }
 
 double volume_of(const Droplet& droplet) {

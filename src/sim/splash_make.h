@@ -16,6 +16,8 @@ inline constexpr float kConeWidth = 0.9f;  ///< half a diagonal of the cone's ba
 
 /// Part of the drop's velocity along the surface that all its droplets take over.
 inline constexpr float kCarried = 0.25f;
+/// And that a crown does: deep water holds it.
+inline constexpr float kCarriedByCrown = 0.08f;
 
 /// Part of the drop's volume that flies away from the place; 0 where nothing does.
 float flying_share(SplashKind kind, Wetness wetness);

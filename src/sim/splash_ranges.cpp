@@ -18,12 +18,14 @@ constexpr Column kPuddle3mm{4, 14, 1, 60, 0.15f, 1.5f};
 constexpr Column kPuddle5mm{12, 22, 1, 90, 0.2f, 2.0f};
 constexpr Column kPuddle10mm{1, 1, 90, 90, 0.1f, 2.0f};
 
-/// Parts of a range. The table has no means: those of medium drops on asphalt stand in the middle. A cone's stands
-/// lower, so that a medium drop's rises by about 30 mm; in the middle it would be 56 mm.
-constexpr float kMiddle = 0.5f, kCone = 0.35f;
+/// Parts of a range. The table has no means: those of medium drops on asphalt stand in the middle.
+constexpr float kMiddle = 0.5f;
 constexpr float kBySize = 0.15f;   ///< that small drops' means lie lower, and large drops' higher
 constexpr float kSmoother = 0.1f;  ///< that the means of concrete and steel lie lower than those of asphalt
 constexpr float kSigma = 0.2f;     ///< standard deviation
+/// Those of cones: they rise by about 2, 13 and 45 mm, each by the size of its drop, and seldom by twice as much.
+constexpr float kConeSmall = 0.05f, kConeMedium = 0.21f, kConeLarge = 0.44f;
+constexpr float kConeSigma = 0.25f;  ///< standard deviation, over the mean
 
 constexpr float kSmall = 0.0015f, kMedium = 0.003f;  ///< m, below which a drop is small, medium
 
@@ -92,10 +94,15 @@ SplashRanges splash_ranges(GroundMaterial material, Wetness wetness, DropSize si
                                               {},
                                               "ask splash_kind() first"});
   const Column& c = column(wetness);
-  float mean = kind == SplashKind::crown_cone ? kCone : kMiddle;
-  if (size == DropSize::small) mean -= kBySize;
-  if (size == DropSize::large) mean += kBySize;
-  if (kind == SplashKind::scattering && material != GroundMaterial::asphalt) mean -= kSmoother;
+  float mean = kMiddle, sigma = kSigma;
+  if (kind == SplashKind::crown_cone) {
+    mean = size == DropSize::small ? kConeSmall : size == DropSize::medium ? kConeMedium : kConeLarge;
+    sigma = kConeSigma * mean;
+  } else {
+    if (size == DropSize::small) mean -= kBySize;
+    if (size == DropSize::large) mean += kBySize;
+    if (material != GroundMaterial::asphalt) mean -= kSmoother;
+  }
 
   SplashRanges r;
   r.fewest = c.fewest, r.most = c.most;
@@ -103,9 +110,9 @@ SplashRanges splash_ranges(GroundMaterial material, Wetness wetness, DropSize si
   r.slowest = c.slowest, r.fastest = c.fastest;
   const auto numbers = static_cast<float>(c.most - c.fewest);
   const float angles = c.highest_deg - c.lowest_deg, speeds = c.fastest - c.slowest;
-  r.number_mean = static_cast<float>(c.fewest) + mean * numbers, r.number_sigma = kSigma * numbers;
-  r.angle_mean_deg = c.lowest_deg + mean * angles, r.angle_sigma_deg = kSigma * angles;
-  r.speed_mean = c.slowest + mean * speeds, r.speed_sigma = kSigma * speeds;
+  r.number_mean = static_cast<float>(c.fewest) + mean * numbers, r.number_sigma = sigma * numbers;
+  r.angle_mean_deg = c.lowest_deg + mean * angles, r.angle_sigma_deg = sigma * angles;
+  r.speed_mean = c.slowest + mean * speeds, r.speed_sigma = sigma * speeds;
   return r;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
 
 #include "meniscus/formulas/rain.h"
 #include "sim/splash_cases.h"
@@ -179,6 +180,59 @@ TEST(CrownCone, LetsOneDropGoAtTheTopThatMovesUprightOnly) {
       EXPECT_LE(m.droplets[i].lands, m.splash.cone_starts);
     }
   }
+}
+
+/// Mean height of what rises from a splash: of the crown's tips and of the cone's, m.
+struct Rise {
+  double crown = 0, cone = 0, widest = 0;
+};
+Rise rise_of(float diameter) {
+  Rise rise;
+  constexpr int kSplashes = 300;
+  for (std::uint64_t id = 0; id < kSplashes; ++id) {
+    Impact impact = impact_on(GroundMaterial::asphalt, Wetness::puddle_10mm, id, diameter);
+    impact.velocity = {0, -fall_speed(diameter), 0};
+    const MadeSplash m = made(impact);
+    const auto top = [](const Droplet& d) { return 0.5 / 9.81 * d.velocity.y * d.velocity.y; };  // without air
+    rise.cone += top(m.droplets.front()) / kSplashes;
+    for (const Droplet& d : std::span(m.droplets).subspan(1)) {
+      rise.crown += top(d) / kSplashes / static_cast<double>(m.droplets.size() - 1);
+      const vec3 at_top = d.start + d.velocity * (d.velocity.y / 9.81f);
+      rise.widest = std::max(rise.widest, double{std::hypot(at_top.x, at_top.z)});
+    }
+  }
+  return rise;
+}
+
+TEST(CrownCone, RisesByMillimetresFromSmallDropsAndByCentimetresFromLargeOnes) {
+  const Rise small = rise_of(0.001f), medium = rise_of(0.002f), large = rise_of(0.004f);
+  EXPECT_NEAR(small.cone, 0.002, 0.001);
+  EXPECT_NEAR(medium.cone, 0.013, 0.003);
+  EXPECT_NEAR(large.cone, 0.046, 0.008);
+  // Crowns stand about one and a half to four diameters high, and lean outwards by less than their height.
+  EXPECT_NEAR(small.crown / 0.001, 2.3, 0.5);
+  EXPECT_NEAR(medium.crown / 0.002, 3.1, 0.5);
+  EXPECT_NEAR(large.crown / 0.004, 2.8, 0.5);
+  for (const auto& [rise, diameter] : {std::pair(small, 0.001), std::pair(medium, 0.002), std::pair(large, 0.004)})
+    EXPECT_LT(
+        rise.widest - made(impact_on(GroundMaterial::asphalt, Wetness::puddle_10mm, 1, static_cast<float>(diameter)))
+                          .splash.circle,
+        1.2 * rise.crown);
+}
+
+TEST(CrownCone, LeansLessThanWhatScatters) {
+  Impact impact = impact_on(GroundMaterial::asphalt, Wetness::puddle_10mm, 1);
+  impact.velocity = {3, -6.5f, -2};
+  vec3 sum{0.0f};
+  int tips = 0;
+  for (std::uint64_t id = 0; id < 2000; ++id) {
+    impact.id = id;
+    const MadeSplash m = made(impact);
+    for (const Droplet& d : std::span(m.droplets).subspan(1)) sum += d.velocity, ++tips;
+  }
+  EXPECT_NEAR(sum.x / static_cast<float>(tips), kCarriedByCrown * 3, 0.003);
+  EXPECT_NEAR(sum.z / static_cast<float>(tips), kCarriedByCrown * -2, 0.003);
+  EXPECT_LT(kCarriedByCrown, kCarried);
 }
 
 }  // namespace
