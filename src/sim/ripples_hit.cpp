@@ -11,9 +11,9 @@ namespace meniscus {
 namespace {
 
 constexpr double kGravity = 9.81, kWaterDensity = 1000;
-constexpr double kWaveEnergy = 0.02;  ///< part of the drop's that goes into waves
+constexpr double kWaveEnergy = 0.06;  ///< part of the drop's that goes into waves
 constexpr double kLeastRadius = 1.5;  ///< of the crater, in steps between points
-constexpr double kSteepest = 0.25;    ///< of a crater's depth to its radius, where the waves are small
+constexpr double kSteepest = 0.4;     ///< of a crater's depth to its radius, where the waves are small
 constexpr double kDeepest = 0.5;      ///< of the water that a crater takes
 constexpr float kMostDiameter = 0.1f, kMostSpeed = 1000;
 
@@ -52,7 +52,10 @@ void Ripples::hit(vec3 point, float diameter, float speed) {
   const double d = diameter, v = speed;
   const double cavity = cavity_radius(d, v, double{options_.surface_tension} / kWaterDensity);
   const double radius = std::max(cavity, kLeastRadius * double{options_.step});
+  // A crater that is wider than the cavity would have slopes less by the square of their ratio with the same energy;
+  // the real ones are short and steep, and slopes are what is seen. It gets a part of them back.
   double amplitude = std::sqrt(kWaveEnergy * d * d * d * v * v / 12 / (kGravity * 0.15873 * radius * radius));
+  amplitude *= std::sqrt(radius / std::max(cavity, 1e-2 * radius));
   amplitude = std::min({amplitude, kSteepest * radius, kDeepest * depth}) * double{options_.strength};
   const double reach = std::sqrt(5.0) * radius / double{options_.step}, per_reach2 = 1 / (reach * reach);
   const int i0 = std::max(static_cast<int>(std::ceil(a - reach)), 0),

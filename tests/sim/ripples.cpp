@@ -343,13 +343,24 @@ TEST(Ripples, AreDeeperForLargerAndFasterDropsButLeaveTheGroundCovered) {
 }
 
 TEST(Ripples, CarryTheirPartOfTheDropsEnergy) {
-  // Fine enough that the crater is the cavity's own: 2 % of the drop's energy, over the density of water.
+  // Fine enough that the crater is the cavity's own: 6 % of the drop's energy, over the density of water.
   Ripples ripples = over(pond(0.1f, 0.001f), 1.0f);
   ripples.hit({0.05f, 0, 0.05f}, 0.002f, 6.5f);
   double potential = 0;
   for (const float h : ripples.heights()) potential += 0.5 * 9.81 * double{h} * double{h} * 1e-6;
   const double kinetic = std::numbers::pi / 12 * 8e-9 * 6.5 * 6.5;
-  EXPECT_NEAR(potential / kinetic, 0.02, 0.0005);
+  EXPECT_NEAR(potential / kinetic, 0.06, 0.0015);
+}
+
+TEST(Ripples, AreLessSteepOnWiderPointsButNotByAllThatTheSameEnergyWouldMakeThem) {
+  // A crater of 9.6 mm, once whole and once as wide as 1.5 points of 30 mm: by energy its depth would go as 1 / R.
+  const auto deepest = [](float step) {
+    Ripples ripples = over(pond(100 * step, step), 1.0f);
+    ripples.hit({50 * step, 0, 50 * step}, 0.002f, 6.5f);
+    return largest_of(ripples);
+  };
+  const double narrow = deepest(0.001f), wide = deepest(0.03f), ratio = 1.5 * 0.03 / 0.0096;
+  EXPECT_NEAR(wide / narrow, std::sqrt(ratio) / ratio, 0.02);
 }
 
 TEST(Ripples, GoOnInNewShapes) {
