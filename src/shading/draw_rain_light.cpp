@@ -12,10 +12,12 @@ namespace meniscus {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-/// Part of a jet's light that its bumps scatter from everywhere instead of refracting it.
-constexpr float kScattered = 0.2f;
+/// Part of a jet's light that its bumps scatter, in its middle and more at its rims, where there is more water.
+constexpr float kScattered = 0.15f, kScatteredAtRims = 0.5f;
+/// How far a jet bends light of what a ball would.
+constexpr float kBend = 0.6f;
 /// Radians by which bumps blur what jets refract.
-constexpr float kJetCone = 0.3f;
+constexpr float kJetCone = 0.35f;
 /// Radians between the points of a ball that its mean is taken from, as their rays go apart.
 constexpr float kBallCone = 0.12f;
 /// The turn of a line, [0, 1], counter-clockwise with y upwards: along the edge of a diamond, without trigonometry.
@@ -78,7 +80,7 @@ RainLight::RainLight(const View& view, const Surroundings& surroundings, float i
       width_(static_cast<float>(view.width)),
       height_(static_cast<float>(view.height)),
       nodes_(static_cast<std::size_t>(kColumns * kRows)) {
-  constexpr int kPoints = 64, kAcross = 8;
+  constexpr int kPoints = 96, kAcross = 8;
   // Points of a disc of equal areas, on a spiral.
   std::array<vec3, kPoints> disc;  // x, y and the cosine of incidence
   for (int k = 0; k < kPoints; ++k) {
@@ -104,12 +106,14 @@ RainLight::RainLight(const View& view, const Surroundings& surroundings, float i
       for (int a = 0; a < kAngles; ++a) {
         const vec2 axis = axis_at(static_cast<float>(a) / kAngles);
         const vec3 side = -axis.y * right + axis.x * up;  // across the axis
+        const vec3 inside = in_jets(axis.x * right + axis.y * up);
         vec3 sum{0.0f};
         for (int k = 0; k < kAcross; ++k) {
           const float s = (2.0f * static_cast<float>(k) + 1.0f) / kAcross - 1.0f;
-          const BodyRays body = rays(v, s * side - std::sqrt(1.0f - s * s) * v);
-          const vec3 through = (1.0f - kScattered) * parts_->radiance(body.exit, kJetCone) + kScattered * parts_->mean;
-          sum += body.mirrored * parts_->radiance(body.mirror_direction, kJetCone) + (1.0f - body.mirrored) * through;
+          const JetRays jet = jet_rays(v, s * side - std::sqrt(1.0f - s * s) * v);
+          const vec3 through = parts_->radiance(jet.body.exit, kJetCone);
+          sum += jet.body.mirrored * parts_->radiance(jet.body.mirror_direction, kJetCone) +
+                 (1.0f - jet.body.mirrored) * (through + jet.scattered * (inside - through));
         }
         node.jets[static_cast<std::size_t>(a)] = sum / static_cast<float>(kAcross);
       }
@@ -169,6 +173,16 @@ BodyRays RainLight::rays(vec3 direction, vec3 normal) const {
   const float sin_i = std::sqrt(std::max(0.0f, 1.0f - cos_i * cos_i));
   return {bend.cosine * direction - bend.sine * outwards,
           direction + 2.0f * cos_i * (sin_i * outwards - cos_i * direction), bend.cosine, bend.mirrored};
+}
+
+JetRays RainLight::jet_rays(vec3 direction, vec3 normal) const {
+  JetRays jet{rays(direction, normal), 0};
+  const vec3 exit = glm::normalize(direction + kBend * (jet.body.exit - direction));
+  jet.body.exit = exit;
+  jet.body.straight = glm::dot(direction, exit);
+  const float facing = glm::dot(direction, normal), beside2 = std::max(0.0f, 1.0f - facing * facing);
+  jet.scattered = kScattered + (kScatteredAtRims - kScattered) * beside2 * beside2;
+  return jet;
 }
 
 vec3 RainLight::glare(const BodyRays& body, vec3 point, float variance) const {

@@ -49,6 +49,14 @@ struct BodyRays {
   float mirrored = 0;           ///< Fresnel reflectance
 };
 
+/// The same of a jet, which bends light less than a ball: it is flat and bumpy.
+struct JetRays {
+  BodyRays body;
+  float scattered = 0;  ///< part of what is not mirrored that comes from in_jets() instead of `exit`
+};
+/// Part of the slope of their sides that jets are lit with: in the mean they are round, and small ones drawn as such.
+constexpr float kLeanOfPiles = 0.3f;
+
 /// Light on the pieces of one picture. What small balls and jets show in the mean over their width hardly changes
 /// across a picture and is looked up in a coarse grid of it.
 class RainLight {
@@ -68,6 +76,9 @@ class RainLight {
 
   /// Rays at a place whose unit normal is `normal`; turned to the eye if it looks away.
   BodyRays rays(vec3 direction, vec3 normal) const;
+  JetRays jet_rays(vec3 direction, vec3 normal) const;
+  /// Light that jets scatter: half from everywhere, half from where their tips point, as it comes down in them.
+  vec3 in_jets(vec3 up) const { return 0.5f * (parts_->mean + parts_->radiance(up, 0.9f)); }
   /// Sun and lamps at a point through the body and in its mirror. @param variance  rad^2, of the rays of a pixel
   vec3 glare(const BodyRays& body, vec3 point, float variance) const;
 

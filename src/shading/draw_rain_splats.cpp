@@ -17,6 +17,8 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kNearest = 1e-3f;
 /// Streaks fade out on their way to the eye between these distances, m: a camera's lens would blur them away.
 constexpr float kStreakGone = 0.15f, kStreakWhole = 0.45f;
+/// Dots are no narrower, px.
+constexpr float kLeastDot = 0.6f;
 /// Balls up to this radius are drawn as dots, px.
 constexpr float kDotRadius = 1.25f;
 /// Piles up to this width of their base are drawn as lines, px.
@@ -111,10 +113,10 @@ class Maker {
     splat.alpha = std::min(opacity, 1.0f);
   }
 
-  /// A square of this area, px^2; at least a pixel wide, so that it goes smoothly from one to the next.
+  /// A square of this area, px^2; not much less than a pixel wide, so that it goes smoothly from one to the next.
   static void make_dot(Splat& splat, float area) {
     splat.kind = Splat::Kind::dot;
-    splat.w0 = splat.w1 = std::max(1.0f, std::sqrt(area));
+    splat.w0 = splat.w1 = std::max(kLeastDot, std::sqrt(area));
     splat.alpha *= area / (splat.w0 * splat.w0);
   }
 

@@ -139,17 +139,25 @@ TEST(DrawRain, ThinPilesCoverTheirShadow) {
       }
 }
 
-TEST(DrawRain, WidePilesCoverTheirFaces) {
-  // Seen along the other diagonal: a triangle of the width of one diagonal.
+TEST(DrawRain, WidePilesCoverTheirFacesButForTheirFeet) {
+  // At the height s, of one, is 2 (1 - s) ds of the area; feet come out of the picture by smoothstep(s / 0.15).
+  double left = 0;
+  for (double s = 0.5e-4; s < 1; s += 1e-4) {
+    const double u = std::min(s / 0.15, 1.0);
+    left += 2 * (1 - s) * u * u * (3 - 2 * u) * 1e-4;
+  }
   const Surroundings& around = white();
-  const double area = 0.5 * 14 * 8;
-  WaterPiece piece = pile({0.3f, -7, 0}, {0.3f, 7, 0}, 4);
-  piece.across = {4, 0, 0};
-  EXPECT_NEAR(sum_of(drawn(plain_view(), {piece}, around)), 0.85 * area, 0.85 * 0.02 * area);
+  const View view = plain_view(60, 60);
+  // Seen along a diagonal: a triangle of the width of the other.
+  WaterPiece piece = pile({0.3f, -14, 0}, {0.3f, 14, 0}, 8);
+  piece.across = {8, 0, 0};
+  const double side = 0.85 * 0.5 * 28 * 16 * left;
+  EXPECT_NEAR(sum_of(drawn(view, {piece}, around)), side, 0.02 * side);
   // From above: the square of the base, once.
-  EXPECT_NEAR(sum_of(drawn(plain_view(), {pile({0.3f, 0, 0}, {0.3f, 0, 3}, 5)}, around)), 0.85 * 50, 0.85 * 50 * 0.02);
-  // From below: the base.
-  EXPECT_NEAR(sum_of(drawn(plain_view(), {pile({0.3f, 0, 0}, {0.3f, 0, -3}, 5)}, around)), 0.85 * 50, 0.85 * 50 * 0.02);
+  const double above = 0.85 * 200 * left;
+  EXPECT_NEAR(sum_of(drawn(view, {pile({0.3f, 0, 0}, {0.3f, 0, 6}, 10)}, around)), above, 0.02 * above);
+  // The base stands in the water.
+  EXPECT_NEAR(sum_of(drawn(view, {pile({0.3f, 0, 0}, {0.3f, 0, -6}, 10)}, around)), 0, 0.01);
 }
 
 TEST(DrawRain, PerspectiveBallsCoverTheirSolidAngle) {
