@@ -17,6 +17,8 @@ inline float eased(float t) { return glm::smoothstep(0.0f, 1.0f, t); }
 
 /// s in which a pile's base becomes as wide as it gets, and a droplet at least takes to swell on its tip.
 inline constexpr float kWiden = 0.008f, kSwell = 0.005f;
+/// Of the way to its tip that a pile of a crown still reaches when it is down: without, needles would lie around it.
+inline constexpr float kCrownKeeps = 0.3f;
 
 /// The shapes of one splash at one age. Each is handed over as what makes it, so that counting them costs little.
 template <class Sink>
@@ -68,10 +70,11 @@ class SplashShapes {
     const vec3 tip = place(droplet, std::min(age_, droplet.leaves));
     return pile(droplet, tip, left, splash_.width * eased(age_ / kWiden) * left);
   }
-  /// The tip is on its orbit all the time; the pile gets thinner as it comes down.
+  /// The tip is on its orbit as it rises; as it comes down the pile draws back from it and gets thinner.
   WaterPiece crown_pile(const Droplet& tip) const {
     const float left = 1 - eased(2 * age_ / tip.lands - 1);
-    return pile(tip, place(tip, age_), 1, splash_.width * eased(age_ / kWiden) * left);
+    return pile(tip, place(tip, age_), kCrownKeeps + (1 - kCrownKeeps) * left,
+                splash_.width * eased(age_ / kWiden) * left);
   }
   WaterPiece pile(const Droplet& droplet, vec3 tip, float length, float width) const {
     WaterPiece piece;
