@@ -4,46 +4,15 @@
 #include <cmath>
 
 #include "base/field_axes.h"
+#include "render/rain_ground.h"
 
 namespace meniscus {
 namespace {
 
 constexpr float kNone = -std::numeric_limits<float>::infinity();
-constexpr int kBeyond = 3;  ///< cells around a puddle that its level goes on for
-
-/// Level of the water at each cell, m along up; kNone far from puddles.
-std::vector<float> levels_of(const WetGround& ground) {
-  std::vector<float> levels(ground.size(), kNone);
-  for (std::size_t i = 0; i < levels.size(); ++i)
-    if (ground.depth(i) > kPuddle) levels[i] = ground.bed(i) + static_cast<float>(ground.depth(i));
-  const auto width = static_cast<std::size_t>(ground.width()), height = static_cast<std::size_t>(ground.height());
-  // Cells get the mean of their neighbours' levels, ring by ring.
-  std::vector<std::size_t> ring;
-  std::vector<float> found;
-  for (int round = 0; round < kBeyond; ++round) {
-    ring.clear();
-    found.clear();
-    for (std::size_t j = 0; j < height; ++j)
-      for (std::size_t i = 0; i < width; ++i) {
-        const std::size_t cell = i + width * j;
-        if (levels[cell] > kNone) continue;
-        float sum = 0;
-        int count = 0;
-        for (std::size_t y = j > 0 ? j - 1 : j; y <= std::min(j + 1, height - 1); ++y)
-          for (std::size_t x = i > 0 ? i - 1 : i; x <= std::min(i + 1, width - 1); ++x) {
-            const float level = levels[x + width * y];
-            if (!(level > kNone)) continue;
-            sum += level;
-            ++count;
-          }
-        if (count == 0) continue;
-        ring.push_back(cell);
-        found.push_back(sum / static_cast<float>(count));
-      }
-    for (std::size_t k = 0; k < ring.size(); ++k) levels[ring[k]] = found[k];
-  }
-  return levels;
-}
+constexpr float kUnder = 0.01f;  ///< m that the water's floor is under the lowest ground
+/// Waves are no higher than this part of the water under them is deep: a shore does not move.
+constexpr float kHighest = 0.5f;
 
 /// Place of a cell's middle along a and b.
 vec2 place_of(const WetGround& ground, const FieldAxes& axes, std::size_t cell) {
@@ -56,7 +25,8 @@ vec2 place_of(const WetGround& ground, const FieldAxes& axes, std::size_t cell) 
 HeightField puddle_field(const WetGround& ground, const Ripples* ripples) {
   const GroundOptions& options = ground.options();
   const FieldAxes axes(options.up);
-  const std::vector<float> levels = levels_of(ground);
+  const PuddleLevels puddles(ground);
+  const std::vector<float>& levels = puddles.cells();
   const int width = ground.width(), height = ground.height();
   HeightField field;
   field.up = options.up;
@@ -97,33 +67,22 @@ HeightField puddle_field(const WetGround& ground, const Ripples* ripples) {
   }
   field.low = origin + step * vec2(begin_x, begin_y);
   field.step = vec2(step);
-  field.floor = lowest - 1;
+  // Just under the ground: rays in the water look no further.
+  field.floor = std::min(lowest, lowest_bed(ground)) - kUnder;
   field.height = Image<float>(end_x - begin_x, end_y - begin_y, kNone);
   const std::span<const float> waves = ripples ? ripples->heights() : std::span<const float>();
   parallel_for(static_cast<std::size_t>(field.height.height()), 16, [&](std::size_t from, std::size_t until) {
     for (int y = static_cast<int>(from); y < static_cast<int>(until); ++y)
       for (int x = 0; x < field.height.width(); ++x) {
         const vec2 place = field.low + step * vec2(x, y);
-        const float u = std::clamp((place.x - first.x) / cell, 0.0f, static_cast<float>(width - 1));
-        const float v = std::clamp((place.y - first.y) / cell, 0.0f, static_cast<float>(height - 1));
-        const int i = static_cast<int>(u), j = static_cast<int>(v);
-        float sum = 0, weights = 0;
-        for (int corner = 0; corner < 4; ++corner) {
-          const int ci = std::min(i + (corner & 1), width - 1), cj = std::min(j + (corner >> 1), height - 1);
-          const float level =
-              levels[static_cast<std::size_t>(ci) + static_cast<std::size_t>(width) * static_cast<std::size_t>(cj)];
-          if (!(level > kNone)) continue;
-          const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
-          const float weight = ((corner & 1) ? s : 1 - s) * ((corner >> 1) ? t : 1 - t);
-          sum += weight * level;
-          weights += weight;
-        }
-        if (!(weights > 1e-4f)) continue;
         float& level = field.height(x, y);
-        level = sum / weights;
-        if (ripples && x + begin_x < ripples->width() && y + begin_y < ripples->height())
-          level += waves[static_cast<std::size_t>(x + begin_x) +
-                         static_cast<std::size_t>(ripples->width()) * static_cast<std::size_t>(y + begin_y)];
+        level = puddles.level(place);
+        if (!(level > kNone) || !ripples || x + begin_x >= ripples->width() || y + begin_y >= ripples->height())
+          continue;
+        const float highest = kHighest * std::max(level - puddles.bed(place), 0.0f);
+        level += std::clamp(waves[static_cast<std::size_t>(x + begin_x) +
+                                  static_cast<std::size_t>(ripples->width()) * static_cast<std::size_t>(y + begin_y)],
+                            -highest, highest);
       }
   });
   find_normals(field);
@@ -131,14 +90,29 @@ HeightField puddle_field(const WetGround& ground, const Ripples* ripples) {
 }
 
 std::vector<float> puddle_depths(const WetGround& ground, const Ripples& ripples) {
+  const GroundOptions& cells = ground.options();
+  const RippleOptions& points = ripples.options();
   const auto width = static_cast<std::size_t>(ripples.width()), height = static_cast<std::size_t>(ripples.height());
+  // The cell of each point along one axis; none: -1.
+  const auto along = [&](std::size_t count, float low, float cells_low, int cells_along) {
+    std::vector<std::ptrdiff_t> cell(count, -1);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double place =
+          (static_cast<double>(low + points.step * static_cast<float>(i)) - static_cast<double>(cells_low)) /
+          static_cast<double>(cells.cell);
+      if (place >= 0 && place <= cells_along) cell[i] = std::min(static_cast<int>(place), cells_along - 1);
+    }
+    return cell;
+  };
+  const std::vector<std::ptrdiff_t> columns = along(width, points.low.x, cells.low.x, ground.width());
+  const std::vector<std::ptrdiff_t> rows = along(height, points.low.y, cells.low.y, ground.height());
   std::vector<float> depths(width * height);
   parallel_for(height, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j)
       for (std::size_t i = 0; i < width; ++i) {
-        const std::optional<std::size_t> cell =
-            ground.cell_at(ripples.place(static_cast<int>(i), static_cast<int>(j), 0));
-        if (cell && ground.depth(*cell) > kPuddle) depths[i + width * j] = static_cast<float>(ground.depth(*cell));
+        if (columns[i] < 0 || rows[j] < 0) continue;
+        const double depth = ground.depth(static_cast<std::size_t>(columns[i] + rows[j] * ground.width()));
+        if (depth > kPuddle) depths[i + width * j] = static_cast<float>(depth);
       }
   });
   return depths;

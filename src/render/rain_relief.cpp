@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -9,6 +10,8 @@ namespace meniscus {
 namespace {
 
 constexpr double kMostTriangles = 2e6;
+/// Where slopes on both sides of a point differ by more, an edge is between them; faces steeper than this are flat.
+constexpr float kEdge = 0.5f;
 constexpr float kSkirt = 1.5f;  ///< m beyond the cells over which the relief runs out into the plane
 
 /// Every so many cells along an edge of `count`, the last always; a point more at each end for the skirt.
@@ -18,6 +21,20 @@ std::vector<int> picked(int count, int stride) {
   cells.push_back(count - 1);
   cells.push_back(count);
   return cells;
+}
+
+/// Slope at a point between two others: the mean of both sides, or that of the flatter where there is an edge.
+float slope_of(float before, float after) {
+  if (std::abs(before - after) < kEdge) return 0.5f * (before + after);
+  return std::abs(before) < std::abs(after) ? before : after;
+}
+
+/// Normal of four points as a whole, upwards.
+vec3 flat_normal(const Mesh& mesh, const std::array<std::uint32_t, 4>& quad, const FieldAxes& axes) {
+  const auto& p = mesh.positions;
+  vec3 normal = glm::cross(p[quad[3]] - p[quad[0]], p[quad[2]] - p[quad[1]]);
+  if (normal[axes.up] < 0) normal = -normal;
+  return glm::normalize(normal);
 }
 
 }  // namespace
@@ -51,19 +68,30 @@ Mesh relief_mesh(const WetGround& ground, float plane) {
           const vec3 across = mesh.positions[high] - mesh.positions[low];
           return across[axes.up] / across[axis];
         };
-        const float by_a = slope((i > 0 ? i - 1 : i) + width * j, std::min(i + 1, width - 1) + width * j, axes.a);
-        const float by_b = slope(i + width * (j > 0 ? j - 1 : j), i + width * std::min(j + 1, height - 1), axes.b);
+        const auto along = [&](std::size_t k, std::size_t count, std::size_t stride_of, int axis) {
+          const std::size_t here = i + width * j;
+          const float before = k > 0 ? slope(here - stride_of, here, axis) : slope(here, here + stride_of, axis);
+          const float after = k + 1 < count ? slope(here, here + stride_of, axis) : before;
+          return slope_of(before, after);
+        };
+        const float by_a = along(i, width, 1, axes.a), by_b = along(j, height, width, axes.b);
         mesh.normals[i + width * j] = glm::normalize(axes.place(-by_a, -by_b, 1.0f));
       }
   });
   mesh.corners.reserve(6 * (width - 1) * (height - 1));
   for (std::size_t j = 0; j + 1 < height; ++j)
     for (std::size_t i = 0; i + 1 < width; ++i) {
-      const auto corner = [&](std::size_t x, std::size_t y) {
-        return static_cast<std::uint32_t>(i + x + width * (j + y));
-      };
-      for (const std::uint32_t c : {corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 0), corner(0, 1), corner(1, 1)})
-        mesh.corners.push_back(c);
+      std::array<std::uint32_t, 4> quad;
+      for (std::size_t k = 0; k < 4; ++k) quad[k] = static_cast<std::uint32_t>(i + k % 2 + width * (j + k / 2));
+      // Kerbs and other steps keep their edges: their faces have corners of their own.
+      const vec3 normal = flat_normal(mesh, quad, axes);
+      if (normal[axes.up] * std::sqrt(1 + kEdge * kEdge) < 1)
+        for (std::uint32_t& corner : quad) {
+          mesh.positions.push_back(vec3(mesh.positions[corner]));
+          mesh.normals.push_back(normal);
+          corner = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+        }
+      for (const int k : {0, 2, 1, 1, 2, 3}) mesh.corners.push_back(quad[static_cast<std::size_t>(k)]);
     }
   return mesh;
 }

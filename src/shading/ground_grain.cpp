@@ -1,5 +1,7 @@
 #include "shading/ground_grain.h"
 
+#include <numbers>
+
 #include "shading/ground_noise.h"
 
 namespace meniscus {
@@ -33,6 +35,27 @@ void add_mottling(vec2 p, float width, std::uint64_t seed, float strength, Grain
   add({0.11f, 0.25f * strength, 0}, p, width, seed + 3, grain);
 }
 
+/// Tread plate: lenses that lie along one diagonal and the other in turn, domes of height (1 - d^2)^2.
+void add_treads(vec2 p, float width, Grain& grain) {
+  constexpr float kPitch = 0.034f, kLength = 0.0135f, kWidth = 0.0042f, kHeight = 0.0013f;
+  // Mean over a lens of the square of its slope, for one axis, times the part of the plate that lenses cover.
+  constexpr float kSteep = 16.0f / 24.0f * kHeight * kHeight * (1.0f / (kLength * kLength) + 1.0f / (kWidth * kWidth));
+  constexpr float kSlopes = 0.5f * kSteep * std::numbers::pi_v<float> * kLength * kWidth / (kPitch * kPitch);
+  const float part = resolved(2.0f * kWidth, width);
+  grain.hidden_slopes += (1.0f - part * part) * kSlopes;
+  if (!(part > 0)) return;
+  const vec2 q = p / kPitch;
+  const std::int32_t i = cell_of(q.x), j = cell_of(q.y);
+  const float side = ((i ^ j) & 1) != 0 ? 1.0f : -1.0f;
+  const vec2 along = std::numbers::sqrt2_v<float> / 2.0f * vec2{1.0f, side}, across{-along.y, along.x};
+  const vec2 off = kPitch * (q - vec2{static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f});
+  const float u = off.x * along.x + off.y * along.y, w = off.x * across.x + off.y * across.y;
+  const float rest = 1.0f - u * u / (kLength * kLength) - w * w / (kWidth * kWidth);
+  if (!(rest > 0)) return;
+  grain.slope -= part * 4.0f * kHeight * rest * (u / (kLength * kLength) * along + w / (kWidth * kWidth) * across);
+  grain.relief += part * rest * rest;
+}
+
 }  // namespace
 
 Grain asphalt_grain(vec2 p, float width, std::uint64_t seed) {
@@ -41,11 +64,13 @@ Grain asphalt_grain(vec2 p, float width, std::uint64_t seed) {
   add({0.043f, 0.13f, 0.0006f}, p, width, seed + 7, grain);
   add({0.019f, 0.12f, 0.0003f}, p, width, seed + 8, grain);
   // Stones in dark binder: the nearest centre among those of the cells around, each with its own radius.
-  constexpr float kPitch = 0.0085f, kMeanCover = 0.61f, kStone = 0.58f, kHeight = 0.0009f, kSlopes = 0.042f;
+  constexpr float kPitch = 0.0085f, kMeanCover = 0.61f, kStone = 0.45f, kHeight = 0.0009f, kSlopes = 0.042f;
   const float part = resolved(kPitch, width);
   grain.hidden_slopes += (1.0f - part * part) * kSlopes;
   if (part > 0) {
-    const vec2 q = p / kPitch;
+    // Broken stones are not round: their plane is warped.
+    vec2 q = p / kPitch;
+    q += 0.3f * vec2{value_noise(q * 2.3f, seed + 9).value, value_noise(q * 2.3f, seed + 10).value};
     const std::int32_t i = cell_of(q.x), j = cell_of(q.y);
     float best = 1e9f, radius = 1, bright = 0;
     vec2 from{0.0f};
@@ -120,6 +145,7 @@ Grain steel_grain(vec2 p, float width, std::uint64_t seed) {
   }
   const float broad = resolved(0.009f, width);
   if (broad > 0) grain.shade += broad * 0.05f * value_noise({p.x / 0.4f, p.y / 0.009f}, seed + 37).value;
+  add_treads(p, width, grain);
   return grain;
 }
 

@@ -1,5 +1,6 @@
 // What wet ground looks like.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -11,6 +12,7 @@
 #include "meniscus/sim.h"
 #include "shading/ground_grain.h"
 #include "shading/ground_noise.h"
+#include "sim/puddle_levels.h"
 
 namespace meniscus {
 namespace {
@@ -18,10 +20,15 @@ namespace {
 constexpr float kWaterIor = 1.333f;
 /// Of the film of water once it is full, of dry and of wet steel.
 constexpr float kFilmRoughness = 0.07f, kSteelRoughness = 0.4f, kWetSteelRoughness = 0.16f;
-/// A coat that mirrors as much as dull steel does, straight on.
-constexpr float kSteelIor = 6.0f;
-/// m of water over which a puddle's own surface takes the mirror image from the film.
-constexpr float kPuddleBegins = 0.0008f, kPuddleIsThere = 0.0014f;
+/// A coat that mirrors as much as weathered steel does, straight on.
+constexpr float kSteelIor = 3.0f, kSteelMirrors = 0.25f;
+/// What is left of its albedo under water.
+constexpr float kSunkSteel = 0.65f;
+/// m under a puddle's level over which the film's coat goes, so that rounding leaves no seam; m above the level over
+/// which the film becomes as smooth as the puddle is.
+constexpr float kUnder = 0.00003f, kShore = 0.0016f;
+/// Two materials are told apart along a line between them; to beams as wide as a cell they are mixed.
+constexpr float kSharpness = 14.0f;
 /// m of film that saturated ground shows without any water on it.
 constexpr float kDampFilm = 0.00004f;
 /// m of water in the dark spot of a drop, and m between spots.
@@ -37,8 +44,10 @@ struct Wet {
   float saturation = 0;  ///< 0 .. 1, of what it can soak up
   float dark = 0;        ///< 0 .. 1, of its face
   float depth = 0;       ///< m of water
-  float material[3]{};   ///< shares, by GroundMaterial
 };
+
+/// Shares of a place, by GroundMaterial.
+using Materials = std::array<float, 3>;
 
 class WetGroundCover final : public GroundCover {
  public:
@@ -49,7 +58,9 @@ class WetGroundCover final : public GroundCover {
         cell_(ground.options().cell),
         width_(ground.width()),
         height_(ground.height()),
-        cells_(ground.size()) {
+        puddles_(ground),
+        cells_(ground.size()),
+        materials_(ground.size()) {
     if (!(look.film_full > 0) || !std::isfinite(look.film_full) || !(look.bumpiness >= 0) ||
         !std::isfinite(look.bumpiness))
       throw Error(ErrorCode::invalid_argument, "the film of wet ground is not above zero, or its bumps are below");
@@ -64,8 +75,9 @@ class WetGroundCover final : public GroundCover {
       if (capacity > 0)
         cells_[i].dark = static_cast<float>(std::clamp(darkened(ground.soaked(i)) / darkened(capacity), 0.0, 1.0));
       cells_[i].depth = static_cast<float>(std::max(ground.depth(i), 0.0));
-      cells_[i].material[static_cast<std::size_t>(ground.material(i))] = 1;
+      materials_[i] = static_cast<std::uint8_t>(ground.material(i));
     }
+    for (std::size_t i = 1; i < materials_.size(); ++i) alone_ = alone_ && materials_[i] == materials_[0];
   }
 
   void cover(std::span<const vec3> points, std::span<const vec3> directions, std::span<const float> widths,
@@ -82,8 +94,9 @@ class WetGroundCover final : public GroundCover {
     return std::min(t, period - t);
   }
 
-  /// Quadratic B-spline over the nine cells around: round spots, no corners.
-  Wet state(vec2 p) const {
+  /// Calls with index and weight of the nine cells around: a quadratic B-spline makes round spots without corners.
+  template <class With>
+  void around(vec2 p, With with) const {
     const float x = folded((p.x - low_.x) / cell_, width_), y = folded((p.y - low_.y) / cell_, height_);
     const int i = std::min(static_cast<int>(x), width_ - 1), j = std::min(static_cast<int>(y), height_ - 1);
     const auto weights = [](float t, float(&w)[3]) {
@@ -94,21 +107,56 @@ class WetGroundCover final : public GroundCover {
     float wx[3], wy[3];
     weights(x - static_cast<float>(i), wx);
     weights(y - static_cast<float>(j), wy);
-    Wet sum;
     for (int dj = 0; dj < 3; ++dj) {
       const int row = std::clamp(j + dj - 1, 0, height_ - 1);
       for (int di = 0; di < 3; ++di) {
         const int column = std::clamp(i + di - 1, 0, width_ - 1);
-        const Wet& cell =
-            cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column)];
-        const float w = wx[di] * wy[dj];
-        sum.saturation += w * cell.saturation;
-        sum.dark += w * cell.dark;
-        sum.depth += w * cell.depth;
-        for (int m = 0; m < 3; ++m) sum.material[m] += w * cell.material[m];
+        with(static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column),
+             wx[di] * wy[dj]);
       }
     }
+  }
+
+  Wet state(vec2 p) const {
+    Wet sum;
+    around(p, [&](std::size_t i, float w) {
+      sum.saturation += w * cells_[i].saturation;
+      sum.dark += w * cells_[i].dark;
+      sum.depth += w * cells_[i].depth;
+    });
     return sum;
+  }
+
+  /// Materials do not fade into each other, but as far as the beam mixes them.
+  Materials materials(vec2 p, float print) const {
+    Materials shares{};
+    if (alone_) {
+      shares[materials_[0]] = 1;
+      return shares;
+    }
+    around(p, [&](std::size_t i, float w) { shares[materials_[i]] += w; });
+    const float sharpness = 1.0f + (kSharpness - 1.0f) * resolved(2.0f * cell_, print);
+    float sum = 0;
+    for (float& share : shares) {
+      // Raised to a power the largest share takes all.
+      if (share > 0.0f && share < 0.999f) share = std::pow(share, sharpness);
+      sum += share;
+    }
+    for (float& share : shares) share /= sum;
+    return shares;
+  }
+
+  /// A place's height above the level of the puddle that it is near, m; infinity far from all. Beyond the cells that of
+  /// the mirror image.
+  float above_puddle(vec2 place, float height) const {
+    if (puddles_.empty()) return std::numeric_limits<float>::infinity();
+    const float x = (place.x - low_.x) / cell_, y = (place.y - low_.y) / cell_;
+    const vec2 cell{folded(x, width_), folded(y, height_)};
+    const vec2 there = low_ + cell_ * cell;
+    const float level = puddles_.level(there);
+    // Beyond the cells no puddle has a surface of its own: its mirror image is a film's.
+    const bool beyond = x < 0 || y < 0 || x > static_cast<float>(width_) || y > static_cast<float>(height_);
+    return beyond ? std::max(puddles_.bed(there) - level, 0.0f) : height - level;
   }
 
   /// How dark a place is where a part of the ground around it is: all or nothing, but for soft edges, to narrow beams.
@@ -158,10 +206,16 @@ class WetGroundCover final : public GroundCover {
     }
     // A steep face belongs to the ground that stands behind it.
     const vec3 inwards = -hit.face_normal;
-    place += 1.5f * cell_ * vec2{inwards[axes_.a], inwards[axes_.b]};
+    const vec2 behind = 1.5f * cell_ * vec2{inwards[axes_.a], inwards[axes_.b]};
+    place += behind;
     Wet wet = state(place);
+    const Materials materials = this->materials(vec2{point[axes_.a], point[axes_.b]} + behind, print);
     // Water runs off what is steep.
-    wet.depth *= smooth((glm::dot(hit.face_normal, axes_.place(0, 0, 1)) - 0.5f) / 0.35f);
+    const float level_ground = smooth((glm::dot(hit.face_normal, axes_.place(0, 0, 1)) - 0.5f) / 0.35f);
+    wet.depth *= level_ground;
+    const float above = level_ground > 0 ? above_puddle({point[axes_.a], point[axes_.b]}, point[axes_.up])
+                                         : std::numeric_limits<float>::infinity();
+    const float puddle = smooth(-above / kUnder);
 
     const float dark = spotted(wet.dark, place, print);
     // Films are not even: ground is not flat below a cell either.
@@ -172,10 +226,10 @@ class WetGroundCover final : public GroundCover {
           unevenness += 0.33f * part * value_noise(place / length, look_.seed + 66).value;
 
     vec3 albedo{0.0f};
-    float roughness = 0, ior = 0, hidden = 0;
+    float roughness = 0, ior = 0, hidden = 0, near_shore = 0;
     vec2 slope{0.0f};
     for (int m = 0; m < 3; ++m) {
-      const float share = wet.material[m];
+      const float share = materials[static_cast<std::size_t>(m)];
       if (!(share > 1e-3f)) continue;
       const auto material = static_cast<GroundMaterial>(m);
       const Grain grain = material == GroundMaterial::asphalt    ? asphalt_grain(p, print, look_.seed)
@@ -186,17 +240,25 @@ class WetGroundCover final : public GroundCover {
       const float film =
           std::max(wet.depth * (1.0f - 0.5f * grain.relief) * unevenness, 0.0f) + kDampFilm * wet.saturation;
       const float full = smooth(film / look_.film_full);
-      const float puddle = smooth((wet.depth - kPuddleBegins) / (kPuddleIsThere - kPuddleBegins));
-      const float bumps = look_.bumpiness * (1.0f - 0.88f * full);
+      // At a shore the film is as smooth and level as the puddle, but for what stands out of it.
+      const float shore = level_ground * (1.0f - smooth(std::max(above, 0.0f) * (1.0f + 0.8f * grain.relief) / kShore));
+      near_shore += share * shore;
+      const float filled = material == GroundMaterial::steel ? 0.3f : 0.88f;  // treads stand out of a film
+      const float bumps = look_.bumpiness * (1.0f - filled * full) * (1.0f - shore);
       slope += share * bumps * grain.slope;
       float own = 1, own_ior = kWaterIor;
       if (material == GroundMaterial::steel) {
-        albedo += share * (1.0f - 0.25f * full) * dry;
-        own = glm::mix(kSteelRoughness, kWetSteelRoughness, full);
+        // Its albedo is that of mirror image and body together, straight on. Under water it is dull: a mirror image
+        // there would have to leave the water again.
+        const float film_roughness = glm::mix(kSteelRoughness, kWetSteelRoughness, full);
+        const vec3 mirrored{(1.0f - film_roughness) * kSteelMirrors};
+        const vec3 body = glm::clamp((dry - mirrored) / (1.0f - mirrored), vec3{0.0f}, vec3{1.0f});
+        albedo += share * glm::mix(body, kSunkSteel * dry, puddle);
+        own = glm::mix(film_roughness, 1.0f, puddle);
         own_ior = kSteelIor;
       } else {
         albedo += share * glm::mix(dry, wetted(dry), std::max(dark, full));
-        own = glm::mix(1.0f, kFilmRoughness, full * (1.0f - puddle));
+        own = glm::mix(glm::mix(1.0f, kFilmRoughness, full) * (1.0f - shore), 1.0f, puddle);
       }
       // Bumps that are not seen widen the mirror image: directions turn by twice the normals' angle.
       const float cone = 0.8f * own * own;
@@ -208,6 +270,10 @@ class WetGroundCover final : public GroundCover {
     hit.albedo = albedo;
     hit.roughness = std::min(std::max(roughness, hidden), 1.0f);
     hit.ior = ior;
+    if (near_shore > 0) {
+      const vec3 levelled = glm::mix(hit.normal, axes_.place(0, 0, 1), near_shore);
+      if (glm::dot(levelled, direction) < 0) hit.normal = glm::normalize(levelled);
+    }
     tilt(u, v, slope, direction, hit);
   }
 
@@ -236,7 +302,10 @@ class WetGroundCover final : public GroundCover {
   vec2 low_;
   float cell_;
   int width_, height_;
+  PuddleLevels puddles_;
   std::vector<Wet> cells_;
+  std::vector<std::uint8_t> materials_;  ///< GroundMaterial, one a cell
+  bool alone_ = true;                    ///< one material everywhere
 };
 
 }  // namespace

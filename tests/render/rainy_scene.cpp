@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "rain.h"
 #include "render/rain_flights.h"
+#include "render/rain_ground.h"
 #include "render/rain_puddles.h"
 
 namespace meniscus {
@@ -196,6 +198,69 @@ TEST(PuddleField, IsLevelOverABowlAndEndsUnderItsShores) {
     }
   EXPECT_LT(high - low, 1e-4f);
   EXPECT_GT(below, 50u);
+}
+
+TEST(PuddleField, HasWavesThatLeaveItsShoresWhereTheyAre) {
+  GroundOptions options;
+  options.low = vec2(-0.5f);
+  options.high = vec2(0.5f);
+  options.roughness = 0;
+  options.heights = Image<float>(50, 50);
+  for (int y = 0; y < 50; ++y)
+    for (int x = 0; x < 50; ++x)
+      options.heights(x, y) = 0.04f * std::min(glm::length((vec2(x, y) - 24.5f) / 25.0f), 1.0f);
+  WetGround ground(options);
+  ground.rain(0.006);
+  ground.settle();
+  RippleOptions waves;
+  waves.low = options.low;
+  waves.high = options.high;
+  waves.step = 0.02f;
+  waves.strength = 30;
+  Ripples ripples(waves);
+  ripples.set_depths(puddle_depths(ground, ripples));
+  for (const float x : {-0.15f, 0.0f, 0.17f}) ripples.hit({x, 0, 0.1f}, 0.004f, 8);
+  for (int i = 0; i < 20; ++i) ripples.advance(0.01);
+  const HeightField still = puddle_field(ground, nullptr), moved = puddle_field(ground, &ripples);
+  const PuddleLevels levels(ground);
+  float highest = 0;
+  for (int j = 0; j < moved.height.height(); ++j)
+    for (int i = 0; i < moved.height.width(); ++i) {
+      const vec2 place = moved.low + moved.step * vec2(i, j);
+      const float level = levels.level(place), bed = levels.bed(place), height = moved.height(i, j);
+      if (!(height > -1)) continue;
+      if (level <= bed)
+        EXPECT_EQ(height, level) << "under the ground beside the water";
+      else
+        EXPECT_GT(height, bed) << "no place falls dry";
+      highest = std::max(highest, std::abs(height - level));
+    }
+  EXPECT_FALSE(still.empty());
+  EXPECT_GT(highest, 1e-4f) << "there are waves";
+}
+
+TEST(ReliefMesh, KeepsTheEdgesOfAStep) {
+  GroundOptions options;
+  options.low = vec2(-0.3f);
+  options.high = vec2(0.3f);
+  options.roughness = 0;
+  options.heights = Image<float>(30, 30);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 30; ++x) options.heights(x, y) = x < 12 ? 0.0f : 0.12f + 0.001f * static_cast<float>(y);
+  const WetGround ground(options);
+  const Mesh mesh = relief_mesh(ground, -0.001f);
+  int steep = 0;
+  for (std::size_t t = 0; t < mesh.corners.size(); t += 3) {
+    const auto corner = [&](std::size_t k) { return mesh.corners[t + k]; };
+    const vec3 a = mesh.positions[corner(0)], b = mesh.positions[corner(1)], c = mesh.positions[corner(2)];
+    if (std::max({std::abs(a.x), std::abs(b.x), std::abs(c.x), std::abs(a.z), std::abs(b.z), std::abs(c.z)}) > 0.27f)
+      continue;  // the border
+    const vec3 face = glm::normalize(glm::cross(b - a, c - a));
+    ASSERT_GT(face.y, 0.0f);
+    steep += face.y < 0.5f ? 1 : 0;
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_GT(glm::dot(mesh.normals[corner(k)], face), 0.999f) << a.x << ' ' << a.z;
+  }
+  EXPECT_GT(steep, 20);
 }
 
 TEST(PuddleField, IsEmptyOnDryGround) {

@@ -1,0 +1,93 @@
+#include "sim/puddle_levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace meniscus {
+namespace {
+
+constexpr float kNone = -std::numeric_limits<float>::infinity();
+constexpr int kBeyond = 3;  ///< cells around a puddle that its level goes on for
+
+/// Level of the water at each cell, m along up; kNone far from puddles.
+std::vector<float> levels_of(const WetGround& ground) {
+  std::vector<float> levels(ground.size(), kNone);
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    if (ground.depth(i) > kPuddle) levels[i] = ground.bed(i) + static_cast<float>(ground.depth(i));
+  const auto width = static_cast<std::size_t>(ground.width()), height = static_cast<std::size_t>(ground.height());
+  // Cells get the mean of their neighbours' levels, ring by ring.
+  std::vector<std::size_t> ring;
+  std::vector<float> found;
+  for (int round = 0; round < kBeyond; ++round) {
+    ring.clear();
+    found.clear();
+    for (std::size_t j = 0; j < height; ++j)
+      for (std::size_t i = 0; i < width; ++i) {
+        const std::size_t cell = i + width * j;
+        if (levels[cell] > kNone) continue;
+        float sum = 0;
+        int count = 0;
+        for (std::size_t y = j > 0 ? j - 1 : j; y <= std::min(j + 1, height - 1); ++y)
+          for (std::size_t x = i > 0 ? i - 1 : i; x <= std::min(i + 1, width - 1); ++x) {
+            const float level = levels[x + width * y];
+            if (!(level > kNone)) continue;
+            sum += level;
+            ++count;
+          }
+        if (count == 0) continue;
+        ring.push_back(cell);
+        found.push_back(sum / static_cast<float>(count));
+      }
+    for (std::size_t k = 0; k < ring.size(); ++k) levels[ring[k]] = found[k];
+  }
+  return levels;
+}
+
+}  // namespace
+
+PuddleLevels::PuddleLevels(const WetGround& ground)
+    : cell_(ground.options().cell), width_(ground.width()), height_(ground.height()), levels_(levels_of(ground)) {
+  const FieldAxes axes(ground.options().up);
+  const vec3 first = ground.place(0);
+  first_ = {first[axes.a], first[axes.b]};
+  beds_.resize(ground.size());
+  for (std::size_t i = 0; i < beds_.size(); ++i) beds_[i] = ground.bed(i);
+  for (const float level : levels_) empty_ = empty_ && !(level > kNone);
+}
+
+PuddleLevels::Corners PuddleLevels::around(vec2 place) const {
+  const float u = std::clamp((place.x - first_.x) / cell_, 0.0f, static_cast<float>(width_ - 1));
+  const float v = std::clamp((place.y - first_.y) / cell_, 0.0f, static_cast<float>(height_ - 1));
+  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
+  Corners corners;
+  for (int corner = 0; corner < 4; ++corner) {
+    const int x = std::min(i + (corner & 1), width_ - 1), y = std::min(j + (corner >> 1), height_ - 1);
+    corners.cell[corner] = static_cast<std::size_t>(x) + static_cast<std::size_t>(width_) * static_cast<std::size_t>(y);
+    corners.weight[corner] = ((corner & 1) ? s : 1 - s) * ((corner >> 1) ? t : 1 - t);
+  }
+  return corners;
+}
+
+float PuddleLevels::level(vec2 place) const {
+  if (empty_) return kNone;
+  const Corners corners = around(place);
+  float sum = 0, weights = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const float level = levels_[corners.cell[corner]];
+    if (!(level > kNone)) continue;
+    sum += corners.weight[corner] * level;
+    weights += corners.weight[corner];
+  }
+  return weights > 1e-4f ? sum / weights : kNone;
+}
+
+float PuddleLevels::bed(vec2 place) const {
+  const Corners corners = around(place);
+  float sum = 0;
+  for (int corner = 0; corner < 4; ++corner) sum += corners.weight[corner] * beds_[corners.cell[corner]];
+  return sum;
+}
+
+}  // namespace meniscus
