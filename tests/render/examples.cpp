@@ -25,8 +25,9 @@ TEST(Examples, AreReadAndHaveWater) {
   const std::string folder = std::string(MENISCUS_SOURCE_DIR) + "/examples";
   std::vector<std::string> scenes = scenes_in(folder);
   EXPECT_GE(scenes.size(), 9u);
-  for (const std::string& scene : scenes_in(folder + "/cords")) scenes.push_back(scene);
-  EXPECT_GE(scenes.size(), 18u);
+  for (const char* figures : {"/cords", "/rain"})
+    for (const std::string& scene : scenes_in(folder + figures)) scenes.push_back(scene);
+  EXPECT_GE(scenes.size(), 23u);
   for (const std::string& path : scenes) {
     try {
       const SceneFile scene = read_scene_file(path);
