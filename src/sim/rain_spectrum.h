@@ -18,6 +18,12 @@ class RainSpectrum {
   double arrivals() const { return arrivals_; }      ///< made drops that come down, 1/(m^2 s)
   double water() const { return water_; }            ///< that they bring, m/s
   double extinction() const { return extinction_; }  ///< of all drops, 1/m
+  // The diameters in equal steps.
+  std::size_t steps() const { return below_.size() - 1; }
+  double first() const { return first_; }                                                         ///< m
+  double step() const { return step_; }                                                           ///< m
+  double middle(std::size_t i) const { return first_ + step_ * (static_cast<double>(i) + 0.5); }  ///< m
+  double part(std::size_t i) const { return below_[i + 1] - below_[i]; }  ///< of the made drops, in a step
   /// Diameter, m, below which is the part `u`, 0 .. 1, of the made drops that come down.
   float diameter(double u) const {
     std::size_t i = guide_[static_cast<std::size_t>(u * static_cast<double>(guide_.size() - 1))];
