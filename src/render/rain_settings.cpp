@@ -15,7 +15,8 @@ constexpr float kBeforeCamera = 6;  ///< m around the eye where drops are seen
 constexpr float kLandscape = 60;    ///< m: bodies larger than this are rained on only near water and eye
 constexpr float kMostAcross = 200;  ///< m, of a region that nobody has said
 constexpr float kAbove = 3;         ///< m above everything from where drops are followed
-constexpr float kBelow = 0.01f;     ///< m under the lowest that they end
+constexpr std::size_t kOrbitEyes = 256;
+constexpr float kBelow = 0.01f;  ///< m under the lowest that they end
 
 float longest_of(vec3 v) { return std::max({v.x, v.y, v.z}); }
 
@@ -27,6 +28,28 @@ Bounds eyes_of(const Survey& survey, const PictureOptions& options) {
   else if (options.camera.orbit_deg == 0)
     eyes.add(view_of(survey, options, 0, 1, 25).eye);
   return eyes;
+}
+
+/// Where it is at a time, s of the film. Pictures come at the rate of the rain's own frames where nothing else is
+/// known.
+std::function<vec3(double)> eye_over_time(const Survey& survey, const PictureOptions& options) {
+  const double frames_per_second = options.rain->frames_per_second;
+  if (options.path)
+    return [path = *options.path, frames_per_second](double time) {
+      return path.at(path.in_seconds() ? time : time * frames_per_second).eye;
+    };
+  const vec3 eye = view_of(survey, options, 0, 1, frames_per_second).eye;
+  if (options.camera.orbit_deg == 0) return [eye](double) { return eye; };
+  // Once round in as many pictures, by a finer orbit between which the eye goes straight.
+  std::vector<vec3> orbit;
+  for (std::size_t i = 0; i <= kOrbitEyes; ++i)
+    orbit.push_back(view_of(survey, options, i, kOrbitEyes, frames_per_second).eye);
+  const double seconds = static_cast<double>(options.rain->frames) / frames_per_second;
+  return [orbit = std::move(orbit), seconds](double time) {
+    const double place = std::clamp(time / seconds, 0.0, 1.0) * static_cast<double>(kOrbitEyes);
+    const std::size_t i = std::min(static_cast<std::size_t>(place), kOrbitEyes - 1);
+    return glm::mix(orbit[i], orbit[i + 1], static_cast<float>(place - static_cast<double>(i)));
+  };
 }
 
 /// The name's body alone, where it stands in the first frame.
@@ -95,6 +118,8 @@ RainSettings rain_over(const Survey& survey, const PictureOptions& options, cons
     rain.low = {middle[axes.a] - half[axes.a], middle[axes.b] - half[axes.b]};
     rain.high = {middle[axes.a] + half[axes.a], middle[axes.b] + half[axes.b]};
   }
+  // All drops near the eye; where a share is asked for, the same everywhere.
+  if (rain.share == 0 && rain.whole_within > 0) rain.eye = eye_over_time(survey, options);
   // From above everything down to the ground.
   float highest = ground_height(survey, options);
   for (const Bounds& box : {settings.water, bodies, eyes})

@@ -9,6 +9,12 @@ namespace {
 
 constexpr float kFading = 0.3f;  ///< of the reach, at its end, over which streaks fade
 constexpr float kMost = 12;      ///< m/s that no drop is faster than by itself
+// A wide-angle lens of 32 mm at f/8: what is near is out of focus.
+constexpr float kAperture = 0.004f;  ///< m across
+constexpr float kFocus = 4;          ///< m
+
+/// Radius, m, of the spot that a point at a distance is blurred to, measured there.
+float blurred(float away) { return 0.5f * kAperture * std::abs(1 - away / kFocus); }
 
 /// Whether a ball may be seen through the view.
 class Seen {
@@ -54,11 +60,15 @@ void add_streaks(const Rain& rain, const Flights& flights, const RainSettings& s
     piece.kind = WaterPiece::Kind::streak;
     piece.from = rain.position(flight.drop, opens);
     piece.to = rain.position(flight.drop, std::min(closes, flight.hit));
-    piece.radius = 0.5f * flight.drop.diameter;
+    // As wide as one drop that hides as much as all that it stands for, and as the lens blurs it: then it hides less.
+    const float drop = 0.5f * flight.drop.diameter * std::sqrt(flight.drop.weight);
+    const bool perspective = view.projection == Projection::perspective;
+    piece.radius = perspective ? std::hypot(drop, blurred(away)) : drop;
+    const float thinned = drop * drop / (piece.radius * piece.radius);
     // Near the end of what is drawn, and where drops come in, they fade.
     const float left = (settings.streak_reach - away) / (kFading * settings.streak_reach);
     const float below = top - middle[up];
-    piece.opacity = std::clamp(std::min(view.projection == Projection::perspective ? left : 1.0f, below), 0.0f, 1.0f);
+    piece.opacity = thinned * std::clamp(std::min(perspective ? left : 1.0f, below), 0.0f, 1.0f);
     if (piece.opacity > 0) pieces.push_back(piece);
   });
 }
