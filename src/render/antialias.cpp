@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numeric>
 
 namespace meniscus {
 namespace {
@@ -12,6 +14,58 @@ constexpr int kGrid = 4;  ///< rays along each edge of a pixel
 constexpr std::size_t kRays = kGrid * kGrid;
 constexpr std::size_t kPixelsAtOnce = 16384;  ///< bounds the memory: about 80 bytes a ray
 constexpr float kFoldCosine = 0.819f;         ///< of 35 degrees
+
+/// The rays of a pixel in the order in which they are drawn: four, one in each row and column of its grid; four more of
+/// the kind; the rest.
+constexpr std::array<std::size_t, kRays> kInTurn{1, 7, 8, 14, 2, 4, 11, 13, 0, 3, 5, 6, 9, 10, 12, 15};
+/// How many are enough where their radiance differs by a part of the largest: one more or less of them then moves the
+/// mean by some percent at most, as one of sixteen does on any outline.
+struct Enough {
+  std::size_t rays;
+  float apart;
+};
+constexpr Enough kEnough[] = {{4, 0.05f}, {8, 0.4f}, {kRays, 1}};
+
+struct PixelMean {
+  vec3 radiance{0.0f};
+  float coverage = 0, thickness = 0;
+};
+
+/// What the rays of one pixel see.
+struct Samples {
+  std::array<vec3, kRays> radiance;
+  std::array<float, kRays> coverage, thickness;
+
+  /// Largest difference between the first rays, as a part of the largest radiance; more where some see no water.
+  float apart(std::size_t rays) const {
+    vec3 least = radiance[kInTurn[0]], most = least;
+    bool mixed = false;
+    for (const std::size_t k : std::span(kInTurn).first(rays)) {
+      mixed = mixed || coverage[k] != coverage[kInTurn[0]];
+      least = glm::min(least, radiance[k]);
+      most = glm::max(most, radiance[k]);
+    }
+    const vec3 difference = most - least;
+    const float largest = std::max({most.r, most.g, most.b, 1e-6f});
+    return std::max(std::max({difference.r, difference.g, difference.b}) / largest, mixed ? 2 * kEnough[0].apart : 0);
+  }
+
+  /// Over the first rays, in the order of the grid.
+  PixelMean mean(std::size_t rays) const {
+    std::array<std::size_t, kRays> order;
+    std::copy_n(kInTurn.begin(), rays, order.begin());
+    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(rays));
+    PixelMean mean;
+    std::array<vec3, kRays> seen;
+    for (std::size_t n = 0; n < rays; ++n) {
+      seen[n] = radiance[order[n]];
+      mean.coverage += coverage[order[n]] / static_cast<float>(rays);
+      mean.thickness += thickness[order[n]] / static_cast<float>(rays);
+    }
+    mean.radiance = averaged({seen.data(), rays});
+    return mean;
+  }
+};
 
 /// Whether two neighbouring pixels show different things.
 class Differ {
@@ -100,21 +154,49 @@ void refine_pixels(const Surface& surface, const View& view, const Scene& scene,
   std::vector<float> coverage(pixels.size()), thickness(pixels.size());
   const std::size_t width = static_cast<std::size_t>(view.width);
   std::vector<vec2> points;
-  for (std::size_t first = 0; first < pixels.size(); first += kPixelsAtOnce) {
-    const std::span<const std::uint32_t> batch = pixels.subspan(first, std::min(kPixelsAtOnce, pixels.size() - first));
+  std::vector<Samples> samples;
+  // Draws some rays of the pixels of a batch.
+  const auto draw = [&](std::span<const std::uint32_t> batch, std::span<const std::size_t> chosen,
+                        std::span<const std::size_t> rays) {
     points.clear();
-    for (const std::uint32_t pixel : batch)
-      for (std::size_t k = 0; k < kRays; ++k)
-        points.emplace_back(static_cast<float>(pixel % width) + (static_cast<float>(k % kGrid) + 0.5f) / kGrid,
-                            static_cast<float>(pixel / width) + (static_cast<float>(k / kGrid) + 0.5f) / kGrid);
+    for (const std::size_t i : chosen)
+      for (const std::size_t k : rays)
+        points.emplace_back(static_cast<float>(batch[i] % width) + (static_cast<float>(k % kGrid) + 0.5f) / kGrid,
+                            static_cast<float>(batch[i] / width) + (static_cast<float>(k / kGrid) + 0.5f) / kGrid);
+    if (points.empty()) return;
     const SurfaceBuffers fine = surface.refine(view, buffers, points);
     const Image<vec3> fine_radiance = shade(view, points, fine, scene, material, optics);
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      radiance[batch[i]] = averaged({fine_radiance.data() + i * kRays, kRays});
-      for (std::size_t k = 0; k < kRays; ++k) {
-        coverage[first + i] += fine.coverage[i * kRays + k] / kRays;
-        if (!fine.thickness.empty()) thickness[first + i] += fine.thickness[i * kRays + k] / kRays;
+    std::size_t point = 0;
+    for (const std::size_t i : chosen)
+      for (const std::size_t k : rays) {
+        samples[i].radiance[k] = fine_radiance[point];
+        samples[i].coverage[k] = fine.coverage[point];
+        samples[i].thickness[k] = fine.thickness.empty() ? 0.0f : fine.thickness[point];
+        ++point;
       }
+  };
+  std::vector<std::size_t> left, rough;  // pixels of a batch that want more rays
+  for (std::size_t first = 0; first < pixels.size(); first += kPixelsAtOnce) {
+    const std::span<const std::uint32_t> batch = pixels.subspan(first, std::min(kPixelsAtOnce, pixels.size() - first));
+    samples.resize(batch.size());
+    left.resize(batch.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    std::size_t drawn = 0;
+    for (const Enough& enough : kEnough) {
+      draw(batch, left, std::span(kInTurn).subspan(drawn, enough.rays - drawn));
+      drawn = enough.rays;
+      rough.clear();
+      for (const std::size_t i : left) {
+        if (drawn < kRays && !(samples[i].apart(drawn) <= enough.apart)) {
+          rough.push_back(i);
+          continue;
+        }
+        const PixelMean mean = samples[i].mean(drawn);
+        radiance[batch[i]] = mean.radiance;
+        coverage[first + i] = mean.coverage;
+        thickness[first + i] = mean.thickness;
+      }
+      left.swap(rough);
     }
   }
   for (std::size_t i = 0; i < pixels.size(); ++i) {

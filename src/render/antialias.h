@@ -14,7 +14,8 @@ namespace meniscus {
 std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, const Scene& scene,
                                              float spacing, const SceneBuffers* solids = nullptr);
 
-/// Draws those pixels anew as the average of 4 x 4 rays in each; coverage and thickness become means as well.
+/// Draws those pixels anew as the average of 4 x 4 rays in each, or of four where those see about the same; coverage
+/// and thickness become means as well.
 void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,
                    const OpticsInputs& optics, std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers,
                    Image<vec3>& radiance);

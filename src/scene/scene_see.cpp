@@ -35,7 +35,11 @@ void Scene::Parts::see(const RayBlock& rays, Beam beam, const std::size_t* pixel
     const int face = hits.face[lane];
     if (face == kNothing) continue;
     seen.depth[i] = hits.distance[lane];
-    seen.normal[i] = face == kSolidFace ? hits.solids[lane].normal : plane_normals[static_cast<std::size_t>(face)];
+    // Of the ground its own normal: the cover's grain has no outlines.
+    const SolidHit* solid = face == kSolidFace ? &hits.solids[lane] : nullptr;
+    seen.normal[i] = !solid           ? plane_normals[static_cast<std::size_t>(face)]
+                     : solid->covered ? solid->face_normal
+                                      : solid->normal;
     seen.albedo[i] = {hits.albedo[0][lane], hits.albedo[1][lane], hits.albedo[2][lane]};
   }
 }
