@@ -91,20 +91,27 @@ HeightField::Sample HeightField::at(float i, float j) const {
 
 void find_normals(HeightField& field) {
   const int width = field.height.width(), height = field.height.height();
-  field.normal = Image<vec3>(width, height, direction_of(field.up));
+  field.normal = Image<vec3>(width, height);
   const FieldAxes axes(field.up);
+  const vec3 upright = direction_of(field.up);
   parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-    for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j)
+    const std::vector<float> dry(static_cast<std::size_t>(width), kDry);
+    for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
+      const float* row = field.height.row(j);
+      const float* before = j > 0 ? field.height.row(j - 1) : dry.data();
+      const float* after = j + 1 < height ? field.height.row(j + 1) : dry.data();
+      vec3* normals = field.normal.row(j);
       for (int i = 0; i < width; ++i) {
-        const float here = field.height(i, j);
-        if (!(here > kDry)) continue;
-        const auto level = [&](int x, int y) {
-          return x < 0 || y < 0 || x >= width || y >= height ? kDry : field.height(x, y);
-        };
-        const float by_a = slope(level(i - 1, j), here, level(i + 1, j), field.step.x);
-        const float by_b = slope(level(i, j - 1), here, level(i, j + 1), field.step.y);
-        field.normal(i, j) = glm::normalize(axes.place(-by_a, -by_b, 1.0f));
+        const float here = row[i];
+        if (!(here > kDry)) {
+          normals[i] = upright;
+          continue;
+        }
+        const float by_a = slope(i > 0 ? row[i - 1] : kDry, here, i + 1 < width ? row[i + 1] : kDry, field.step.x);
+        const float by_b = slope(before[i], here, after[i], field.step.y);
+        normals[i] = glm::normalize(axes.place(-by_a, -by_b, 1.0f));
       }
+    }
   });
 }
 
