@@ -89,10 +89,13 @@ void draw_thin(const RainPicture& picture, const Tile& tile, const Splat& splat)
   }
 }
 
-/// Share of the time in which a ball that goes from 0 to `length` covers a point at (u, v): its chord's way past it.
-/// Ends are as round and soft as they are. @param radius  px, > 0
+/// Share of the time in which a ball that goes from 0 to `length` covers a pixel at (u, v): its chord's way past it, in
+/// the mean of two points across. Ends are as round and soft as they are. @param radius  px, > 0
 float chord_part(float u, float v, float length, float radius) {
-  const float chord = std::sqrt(std::max(0.0f, radius * radius - v * v));
+  constexpr float kPoint = 0.2886751f;  // Gauss
+  const float low = v - kPoint, high = v + kPoint, radius2 = radius * radius;
+  const float chord =
+      0.5f * (std::sqrt(std::max(0.0f, radius2 - low * low)) + std::sqrt(std::max(0.0f, radius2 - high * high)));
   const float whole = std::max(length, 1e-3f);
   return std::max(0.0f, std::min(u + chord, whole) - std::max(u - chord, 0.0f)) / whole;
 }
