@@ -17,29 +17,30 @@ std::vector<float> levels_of(const WetGround& ground) {
     if (ground.depth(i) > kPuddle) levels[i] = ground.bed(i) + static_cast<float>(ground.depth(i));
   const auto width = static_cast<std::size_t>(ground.width()), height = static_cast<std::size_t>(ground.height());
   // Cells get the mean of their neighbours' levels, ring by ring.
-  std::vector<std::size_t> ring;
-  std::vector<float> found;
   for (int round = 0; round < kBeyond; ++round) {
-    ring.clear();
-    found.clear();
-    for (std::size_t j = 0; j < height; ++j)
-      for (std::size_t i = 0; i < width; ++i) {
-        const std::size_t cell = i + width * j;
-        if (levels[cell] > kNone) continue;
-        float sum = 0;
-        int count = 0;
-        for (std::size_t y = j > 0 ? j - 1 : j; y <= std::min(j + 1, height - 1); ++y)
-          for (std::size_t x = i > 0 ? i - 1 : i; x <= std::min(i + 1, width - 1); ++x) {
-            const float level = levels[x + width * y];
-            if (!(level > kNone)) continue;
-            sum += level;
-            ++count;
-          }
-        if (count == 0) continue;
-        ring.push_back(cell);
-        found.push_back(sum / static_cast<float>(count));
+    std::vector<float> grown = levels;
+    parallel_for(height, 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) {
+        const std::size_t first_row = j > 0 ? j - 1 : j, last_row = std::min(j + 1, height - 1);
+        const auto from = levels.begin() + static_cast<std::ptrdiff_t>(first_row * width);
+        const auto until = levels.begin() + static_cast<std::ptrdiff_t>((last_row + 1) * width);
+        if (std::all_of(from, until, [](float level) { return level == kNone; })) continue;
+        for (std::size_t i = 0; i < width; ++i) {
+          if (levels[i + width * j] > kNone) continue;
+          float sum = 0;
+          int count = 0;
+          for (std::size_t y = first_row; y <= last_row; ++y)
+            for (std::size_t x = i > 0 ? i - 1 : i; x <= std::min(i + 1, width - 1); ++x) {
+              const float level = levels[x + width * y];
+              if (!(level > kNone)) continue;
+              sum += level;
+              ++count;
+            }
+          if (count > 0) grown[i + width * j] = sum / static_cast<float>(count);
+        }
       }
-    for (std::size_t k = 0; k < ring.size(); ++k) levels[ring[k]] = found[k];
+    });
+    levels.swap(grown);
   }
   return levels;
 }
