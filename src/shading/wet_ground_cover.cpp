@@ -154,8 +154,9 @@ class WetGroundCover final : public GroundCover {
     const vec2 cell{folded(x, width_), folded(y, height_)};
     const vec2 there = low_ + cell_ * cell;
     const float level = puddles_.level(there);
-    // Beyond the cells no puddle has a surface of its own: its mirror image is a film's.
-    const bool beyond = x < 0 || y < 0 || x > static_cast<float>(width_) || y > static_cast<float>(height_);
+    // Beyond the outermost cells' middles no puddle has a surface of its own: its mirror image is a film's.
+    const bool beyond =
+        x < 0.5f || y < 0.5f || x > static_cast<float>(width_) - 0.5f || y > static_cast<float>(height_) - 0.5f;
     return beyond ? std::max(puddles_.bed(there) - level, 0.0f) : height - level;
   }
 
@@ -253,7 +254,8 @@ class WetGroundCover final : public GroundCover {
         const float film_roughness = glm::mix(kSteelRoughness, kWetSteelRoughness, full);
         const vec3 mirrored{(1.0f - film_roughness) * kSteelMirrors};
         const vec3 body = glm::clamp((dry - mirrored) / (1.0f - mirrored), vec3{0.0f}, vec3{1.0f});
-        albedo += share * glm::mix(body, kSunkSteel * dry, puddle);
+        // The body under the mirror image is rough oxide.
+        albedo += share * glm::mix(glm::mix(body, wetted(body), full), wetted(kSunkSteel * dry), puddle);
         own = glm::mix(film_roughness, 1.0f, puddle);
         own_ior = kSteelIor;
       } else {

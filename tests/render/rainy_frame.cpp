@@ -81,6 +81,39 @@ double difference(const FramePicture& a, const FramePicture& b) {
   return sum;
 }
 
+TEST(RainyFrame, HasNoSeamAtAShore) {
+  PictureOptions options;
+  options.width = 80;
+  options.height = 240;
+  options.antialias = Antialias::off;
+  options.camera.eye = vec3(0, 0.8f, 2.6f);
+  options.camera.target = vec3(0, 0, 0.2f);
+  options.rain = rain_on_square(1.2f, 60);
+  options.rain->rained_mm = 14;
+  options.rain->shown = RainShown::neither;
+  options.rain->with_ripples = false;
+  GroundOptions& cells = options.rain->ground.cells;
+  cells.heights = Image<float>(48, 48);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 48; ++x)
+      cells.heights(x, y) = 0.03f * std::min(glm::length((vec2(x, y) - 23.5f) / 24.0f), 1.0f);
+  const FramePicture picture = drawn(options, 0);
+  // Up the middle, over the near shore: means of a few columns, from row to row.
+  const auto bright = [&](int y) {
+    float sum = 0;
+    for (int x = 30; x < 50; ++x) sum += picture.radiance(x, y).y;
+    return sum / 20;
+  };
+  float most = 0, lowest = 1e9f, highest = 0;
+  for (int y = 110; y < 235; ++y) {
+    most = std::max(most, std::abs(bright(y) / bright(y - 1) - 1));
+    lowest = std::min(lowest, bright(y));
+    highest = std::max(highest, bright(y));
+  }
+  EXPECT_LT(most, 0.1f) << "grain alone";
+  EXPECT_GT(highest, 1.3f * lowest) << "from water to ground";
+}
+
 TEST(RainyFrame, DrawsOnlyWhatIsAskedFor) {
   PictureOptions options = wet_square();
   const auto with = [&](RainShown shown) {
