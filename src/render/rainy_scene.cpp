@@ -11,6 +11,7 @@
 #include "render/rain_depths.h"
 #include "render/rain_flights.h"
 #include "render/rain_ground.h"
+#include "render/rain_panes.h"
 #include "render/rain_puddles.h"
 #include "render/rain_streaks.h"
 
@@ -235,6 +236,7 @@ struct RainyScene::Parts {
   std::optional<Ripples> rings_on_ground, rings_on_water;
   std::optional<Flights> flights;
   std::shared_ptr<const Solid> relief;
+  std::optional<std::vector<PlacedSolid>> panes;  ///< of the tank, that drops do not go through
   vec3 up{0, 1, 0};
   std::int64_t tick = 0;                                   ///< the next one
   double time = -std::numeric_limits<double>::infinity();  ///< that was asked for last
@@ -274,8 +276,10 @@ void RainyScene::advance(double time, const Scene& scene, const Surface* water, 
     parts.rings_on_water.emplace(on_water(parts.settings.ripples, parts.rain.options().up, where));
     parts.rings_on_water->set_depths(water_depths(*parts.rings_on_water, *deep, scene, kDeep));
   }
+  if (!parts.panes) parts.panes = glass_panes(scene.tank());
+  const Scene met = parts.panes->empty() ? scene : with_solids(scene, *parts.panes);
   const std::int64_t before = parts.tick;
-  while (static_cast<double>(parts.tick) * kTick < time) parts.one_tick(scene, deep);
+  while (static_cast<double>(parts.tick) * kTick < time) parts.one_tick(met, deep);
   if (parts.tick > before) parts.retire();
 }
 
