@@ -10,12 +10,28 @@ namespace {
 constexpr float kNone = -std::numeric_limits<float>::infinity();
 constexpr int kBeyond = 3;  ///< cells around a puddle that its level goes on for
 
+/// Whether a cell and those around it have a puddle's depth on average: one heavy drop on a film makes no puddle.
+bool in_puddle(const WetGround& ground, std::size_t i, std::size_t j) {
+  const auto width = static_cast<std::size_t>(ground.width()), height = static_cast<std::size_t>(ground.height());
+  if (!(ground.depth(i + width * j) > kPuddle)) return false;
+  double sum = 0;
+  int count = 0;
+  for (std::size_t y = j > 0 ? j - 1 : j; y <= std::min(j + 1, height - 1); ++y)
+    for (std::size_t x = i > 0 ? i - 1 : i; x <= std::min(i + 1, width - 1); ++x) {
+      sum += ground.depth(x + width * y);
+      ++count;
+    }
+  return sum > kPuddle * count;
+}
+
 /// Level of the water at each cell, m along up; kNone far from puddles.
 std::vector<float> levels_of(const WetGround& ground) {
   std::vector<float> levels(ground.size(), kNone);
-  for (std::size_t i = 0; i < levels.size(); ++i)
-    if (ground.depth(i) > kPuddle) levels[i] = ground.bed(i) + static_cast<float>(ground.depth(i));
   const auto width = static_cast<std::size_t>(ground.width()), height = static_cast<std::size_t>(ground.height());
+  for (std::size_t j = 0; j < height; ++j)
+    for (std::size_t i = 0; i < width; ++i)
+      if (in_puddle(ground, i, j))
+        levels[i + width * j] = ground.bed(i + width * j) + static_cast<float>(ground.depth(i + width * j));
   // Cells get the mean of their neighbours' levels, ring by ring.
   for (int round = 0; round < kBeyond; ++round) {
     std::vector<float> grown = levels;

@@ -263,6 +263,18 @@ TEST(ReliefMesh, KeepsTheEdgesOfAStep) {
   EXPECT_GT(steep, 20);
 }
 
+TEST(PuddleField, HasNoPuddleOfOneDropOnAFilm) {
+  GroundOptions options;
+  options.high = vec2(1);
+  options.roughness = 0;
+  WetGround ground(options);
+  ground.rain(ground.capacity(0) + 0.5e-3);
+  // Four millimetres of water on one cell, shared with its neighbours.
+  ground.add(*ground.cell_at({0.5f, 0, 0.5f}), 4e-3 * 4e-4);
+  EXPECT_GT(ground.depth(*ground.cell_at({0.5f, 0, 0.5f})), kPuddle);
+  EXPECT_TRUE(puddle_field(ground, nullptr).empty());
+}
+
 TEST(PuddleField, IsEmptyOnDryGround) {
   GroundOptions options;
   options.high = vec2(1);
