@@ -240,6 +240,14 @@ TEST(DrawRain, DropsShowTheWorldUpsideDown) {
   EXPECT_LT(picture(20, 12).x, 0.15f);
 }
 
+TEST(DrawRain, BallsMirrorTheSkyByFresnel) {
+  // In the upper half what goes through shows the black below; what is mirrored shows the white above.
+  const Image<vec3> picture = drawn(plain_view(), {ball({0.5f, 0.5f, 0}, 15)}, half_lit());
+  for (int k = 9; k <= 13; ++k) {
+    EXPECT_NEAR(picture(20, 19 - k).x, reflectance(std::asin(k / 15.0), 1.333), 0.008) << k;
+  }
+}
+
 TEST(DrawRain, BallsBendLightAsTwoInterfacesDo) {
   const double ior = 1.333;
   const BallOptics optics(static_cast<float>(ior));
