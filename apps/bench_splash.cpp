@@ -187,9 +187,9 @@ void add_bench_splash(CLI::App& bench) {
   add_json(*command, arguments->json);
   command->footer(
       "Medium drops on asphalt that is wet or under 3, 5 or 10 mm of water, fallen within the last 0.1 s, seen from "
-      "1.6 m"
-      " above the ground up to 20 m away. Measured are the pieces of the splashes and their drawing over a picture of the"
-      " ground; each scene counts with the median of three.");
+      "1.6 m above the ground up to 20 m away. Measured are the pieces of the splashes and their drawing over a "
+      "picture "
+      "of the ground; each scene counts with the median of three.");
   run_with(*command, arguments, measure, print);
 }
 
