@@ -197,7 +197,7 @@ struct WetLook {
   float bumpiness = 1;        ///< factor of the grain's bumps
   std::uint64_t seed = 1;     ///< of the grain
   /// Albedos of dry concrete, asphalt, steel; linear.
-  std::array<vec3, 3> albedo{vec3{0.42f, 0.41f, 0.39f}, vec3{0.11f, 0.11f, 0.115f}, vec3{0.30f, 0.31f, 0.32f}};
+  std::array<vec3, 3> albedo{vec3{0.34f, 0.33f, 0.31f}, vec3{0.11f, 0.11f, 0.115f}, vec3{0.20f, 0.205f, 0.21f}};
 };
 
 /// The ground's grain by its materials; soaked it is darker [LeknerDorf1988], a film of water on it shines. Beyond the

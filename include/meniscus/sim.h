@@ -468,8 +468,9 @@ class Rain {
   explicit Rain(const RainOptions& options);
   const RainOptions& options() const { return options_; }
   float share() const { return share_; }  ///< part of the drops that is made
-  double drops_per_second() const;        ///< made ones, over the whole region, while it rains
-  double rate_of_mist() const;            ///< m/s of water that falls in drops that are not made
+  double drops_per_second()
+      const;  ///< made ones, over the region, while it rains; with an eye: over its middle, in still air
+  double rate_of_mist() const;  ///< m/s of water that falls in drops that are not made
   /// Drops that reach the level after `from` and not after `until`, in order of time; ids are theirs for ever.
   std::vector<RainDrop> arriving(double from, double until) const;
   /// Where the drop is at a time before (or after) it reaches the level.
@@ -481,7 +482,7 @@ class Rain {
     std::vector<double> times;
   };
   Way way(const RainDrop& drop) const;
-  /// Water that the drop brings, m^3: its own over share().
+  /// Water that the drop brings, m^3: its own times its weight.
   double volume(const RainDrop& drop) const;
   /// Fraction of light that all drops together take from a metre of a ray, 1/m.
   float extinction() const;

@@ -62,8 +62,8 @@ FORMULA float schlick_reflectance(float cos_i, float eta) {
   return r_0 + (1.0f - r_0) * d * d * d * d * d;
 }
 
-/// Fraction of light from all directions alike that an interface throws back, from the side of the lower index: the mean
-/// of fresnel_reflectance() weighted by the cosine.                              [Duntley1942], [LeknerDorf1988]
+/// Fraction of light from all directions alike that an interface throws back, from the side of the lower index: the
+/// mean of fresnel_reflectance() weighted by the cosine.                              [Duntley1942], [LeknerDorf1988]
 /// @param eta  > 1
 FORMULA float diffuse_reflectance(float eta) {
   float n = eta;
