@@ -61,7 +61,7 @@ FrameSequence heights_sequence(const MadeHeights& heights, Axis up) {
     throw Error(ErrorCode::invalid_argument, "made-up heights need a number of frames a second above 0");
   FrameSequence sequence;
   for (std::size_t i = 0; i < heights.frames; ++i)
-    sequence.frames.push_back({fmt::format("heights {}", i), static_cast<std::int64_t>(i)});
+    sequence.frames.push_back({fmt::format("heights {}", i), static_cast<std::int64_t>(i), std::nullopt});
   sequence.source = [up, per_second = heights.frames_per_second](const FramePath& frame) {
     Particles none;
     none.format = "heights";

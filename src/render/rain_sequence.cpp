@@ -19,7 +19,7 @@ FrameSequence rain_sequence(const RainSettings& settings, Axis up) {
     throw Error(ErrorCode::invalid_argument, "rain needs a number of frames a second above 0");
   FrameSequence sequence;
   for (std::size_t i = 0; i < settings.frames; ++i)
-    sequence.frames.push_back({fmt::format("rain {}", i), static_cast<std::int64_t>(i)});
+    sequence.frames.push_back({fmt::format("rain {}", i), static_cast<std::int64_t>(i), std::nullopt});
   sequence.source = [up, per_second = settings.frames_per_second](const FramePath& frame) {
     Particles none;
     none.format = "rain";

@@ -10,7 +10,7 @@ FrameSequence waves_sequence(const WavesOptions& options) {
     throw Error(ErrorCode::invalid_argument, "waves need a number of frames a second above 0");
   FrameSequence sequence;
   for (std::size_t i = 0; i < options.frames; ++i)
-    sequence.frames.push_back({fmt::format("waves {}", i), static_cast<std::int64_t>(i)});
+    sequence.frames.push_back({fmt::format("waves {}", i), static_cast<std::int64_t>(i), std::nullopt});
   sequence.source = [options](const FramePath& frame) {
     return synthetic_waves(options, static_cast<double>(frame.number.value_or(0)) / options.frames_per_second);
   };

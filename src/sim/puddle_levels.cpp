@@ -9,6 +9,9 @@ namespace {
 
 constexpr float kNone = -std::numeric_limits<float>::infinity();
 constexpr int kBeyond = 3;  ///< cells around a puddle that its level goes on for
+/// Depth, in parts of kPuddle, that a cell beyond the edge has at most: level water on rising ground has less, running
+/// water on an even slope dips under the ground so, and does not end at the edge of a cell.
+constexpr float kDeepest[kBeyond] = {0.3f, -0.5f, -1.3f};
 
 /// Whether a cell and those around it have a puddle's depth on average: one heavy drop on a film makes no puddle.
 bool in_puddle(const WetGround& ground, std::size_t i, std::size_t j) {
@@ -52,7 +55,9 @@ std::vector<float> levels_of(const WetGround& ground) {
               sum += level;
               ++count;
             }
-          if (count > 0) grown[i + width * j] = sum / static_cast<float>(count);
+          if (count > 0)
+            grown[i + width * j] = std::min(sum / static_cast<float>(count),
+                                            ground.bed(i + width * j) + kDeepest[round] * static_cast<float>(kPuddle));
         }
       }
     });
