@@ -177,7 +177,9 @@ class SequenceRun {
       report.notes.push_back(
           fmt::format("{} particles with NaN or infinite positions are left out", particles->dropped_non_finite));
     report.notes.insert(report.notes.end(), particles->notes.begin(), particles->notes.end());
-    settings_->view = view_of(survey_, picture_, index, count, options_.video.frames_per_second);
+    // A camera's path belongs to the whole sequence, as the water does: a part of it is seen from where that part is.
+    const std::size_t along = picture_.path && options_.turntable == 0 ? shot.frame.place.value_or(index) : index;
+    settings_->view = view_of(survey_, picture_, along, count, options_.video.frames_per_second);
     // Made frames know their time; files may count theirs from anywhere.
     const double in_film = static_cast<double>(shot.place) / options_.video.frames_per_second;
     settings_->time = sequence_.foreseen ? particles->time.value_or(in_film) : in_film;
