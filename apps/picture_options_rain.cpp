@@ -57,6 +57,7 @@ void PictureArguments::add_rain(CLI::App& command) {
       "No drops in the air are drawn");
   group.flag(
       "--only-streaks", [](PictureOptions& p) { rain_of(p).shown = RainShown::streaks; }, "No splashes are drawn");
+  command.get_option("--only-splashes")->excludes("--only-streaks");
   group.flag(
       "--no-ripples", [](PictureOptions& p) { rain_of(p).with_ripples = false; }, "Drops make no rings on water");
 }

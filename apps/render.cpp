@@ -71,8 +71,6 @@ SceneFile scene_of(RenderArguments& arguments) {
 
 /// Refuses what cannot be meant together.
 void check_together(const PictureOptions& picture) {
-  if (picture.rain && picture.camera.orthographic_height && !picture.path)
-    throw UsageError("--orthographic: rain is seen through a perspective camera");
   if (picture.heights && picture.method != SurfaceMethod::height_field)
     throw UsageError("--surface: the scene's water.heights is a height field, and no particles are there");
   if (picture.optics.refraction == RefractionMethod::virtual_eye && picture.camera.orthographic_height && !picture.path)

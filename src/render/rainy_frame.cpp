@@ -73,10 +73,10 @@ void draw_rain_over(const FrameSettings& settings, const View& view, const Scene
   RainLook look = rain.settings().look;
   {
     const StageTimer timer(times, "pieces");
-    pieces = rain.pieces(view);
+    if (!buffers.eye_in_water) pieces = rain.pieces(view);  // from below, the surface hides them
   }
   const RainShown shown = rain.settings().shown;
-  if (shown == RainShown::all || shown == RainShown::streaks)
+  if ((shown == RainShown::all || shown == RainShown::streaks) && !buffers.eye_in_water)
     look.haze_radiance =
         look.haze_radiance == vec3(0.0f) ? horizon(settings.environment, rain.settings().rain.up) : look.haze_radiance;
   else

@@ -28,6 +28,7 @@ constexpr double kLongest = 86400;     ///< s that may be gone on at once
 /// s of rain before a film that begins on wet ground, so that splashes and rings are there in its first picture.
 constexpr double kBefore = 1;
 constexpr double kSoonWet = 1;         ///< s of rain after which bodies count as wet
+constexpr float kSteepest = 0.5f;      ///< cosine of the steepest water that splashes
 constexpr float kBelow = 0.01f;        ///< m under the lowest cell where drops end
 constexpr float kPlane = 1e-3f;        ///< m under the lowest cell where the plane around the cells is
 constexpr float kDeep = 1;             ///< m, of water whose depth is not known
@@ -173,7 +174,10 @@ struct RainyScene::Parts {
         impact.point += static_cast<float>(ground->depth(flight.cell)) * up;
         break;
       case Flight::Target::water:
-        impact.wetness = Wetness::puddle_10mm;
+        // Crowns and cones rise upright, whatever the waves; on the steep side of a breaking one they do not rise.
+        impact.wetness = glm::dot(flight.normal, up) > kSteepest ? Wetness::puddle_10mm : Wetness::dry;
+        impact.material = GroundMaterial::concrete;
+        impact.normal = up;
         break;
       case Flight::Target::plane:
         impact.material = settings.ground.cells.material;

@@ -149,6 +149,28 @@ TEST(RainyFrame, LeavesTheParticlesOfATankAlone) {
   EXPECT_GT(settings.rain->splashes(), 0u);
 }
 
+TEST(RainyFrame, ShowsNoSplashesFromUnderTheWater) {
+  const Particles tank = synthetic_tank(3000);
+  PictureOptions options;
+  options.width = 80;
+  options.height = 48;
+  options.cloud_cover = 1;
+  options.camera.eye = tank.bounds().centre() * vec3(1, 0.5f, 1);
+  options.camera.target = *options.camera.eye + vec3(0.3f, 0.6f, 0);
+  const auto shown = [&](RainShown what) {
+    options.rain.emplace();
+    options.rain->rain.rate_mm_h = 100;
+    options.rain->rain.most_per_second = 20000;
+    options.rain->shown = what;
+    FrameSettings settings = settings_of(survey_particles(tank), options);
+    settings.time = 0.3;
+    return render_frame(tank, settings);
+  };
+  const FramePicture all = shown(RainShown::all);
+  ASSERT_TRUE(all.buffers.eye_in_water);
+  EXPECT_TRUE(same(all, shown(RainShown::neither)));
+}
+
 TEST(RainyFrame, AResumedSequenceIsTheSame) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "resumed_rain";
   std::filesystem::remove_all(folder);

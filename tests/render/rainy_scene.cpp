@@ -167,6 +167,45 @@ TEST(RainyScene, MakesRingsAndSplashesOnDeepWater) {
   EXPECT_GT(on_water, 10u);
 }
 
+/// Water whose surface rises by `slope` metres a metre along x.
+std::unique_ptr<Surface> sloping_water(float slope) {
+  HeightField field;
+  field.low = vec2(-0.5f);
+  field.step = vec2(0.05f);
+  field.floor = -2;
+  field.height = Image<float>(21, 21);
+  for (int j = 0; j < 21; ++j)
+    for (int i = 0; i < 21; ++i) field.height(i, j) = slope * (0.05f * static_cast<float>(i) - 0.5f);
+  find_normals(field);
+  return make_height_field_surface(std::move(field));
+}
+
+/// What stands up of the splashes on it after a while.
+std::vector<WaterPiece> piles_on(const Surface& water) {
+  RainSettings settings;
+  settings.rain.rate_mm_h = 100;
+  settings.rain.low = vec2(-0.45f);
+  settings.rain.high = vec2(0.45f);
+  settings.rain.level = -3;
+  RainyScene rain(settings);
+  rain.advance(0.4, empty_scene(-2.5f), &water);
+  EXPECT_GT(rain.hits(), 100u);
+  std::vector<WaterPiece> pieces = rain.pieces(perspective_view({0, 1, 3}, {0, 0, 0}, {0, 1, 0}, 1, 640, 360));
+  std::erase_if(pieces, [](const WaterPiece& piece) { return piece.kind != WaterPiece::Kind::pyramid; });
+  return pieces;
+}
+
+TEST(RainyScene, CrownsAndConesStandUprightOnWaves) {
+  const std::vector<WaterPiece> piles = piles_on(*sloping_water(1));
+  ASSERT_GT(piles.size(), 50u);
+  vec3 sum{0.0f};
+  for (const WaterPiece& pile : piles) sum += pile.to - pile.from;
+  EXPECT_GT(sum.y, 0);
+  EXPECT_LT(std::abs(sum.x), 0.15f * sum.y);  // along the normal it would be as much as upwards
+}
+
+TEST(RainyScene, NothingShootsOutOfTheSteepSideOfABreakingWave) { EXPECT_TRUE(piles_on(*sloping_water(3)).empty()); }
+
 TEST(PuddleField, IsLevelOverABowlAndEndsUnderItsShores) {
   GroundOptions options;
   options.low = vec2(-1);
