@@ -109,11 +109,8 @@ void blur(Image<float>& image, float sigma_px) { blur_any(image, sigma_px); }
 void blur_finely(Image<vec3>& image, float sigma_px) { blur_finely_any(image, sigma_px); }
 void blur_finely(Image<float>& image, float sigma_px) { blur_finely_any(image, sigma_px); }
 
-LightMap::LightMap(const View& view, Image<Fractions> texels, Image<float> first)
-    : texels_(std::move(texels)),
-      first_(std::move(first)),
-      z_axis_(view.forward),
-      z_origin_(glm::dot(view.forward, view.eye)) {
+LightMap::LightMap(const View& view, Image<Fractions> texels, vec3 up, Image<float> level, float soft)
+    : texels_(std::move(texels)), up_(up), level_(std::move(level)), soft_(soft) {
   const float per_metre = 1.0f / view.pixel_size(0.0f);
   x_axis_ = view.right * per_metre;
   y_axis_ = -view.up * per_metre;
@@ -127,14 +124,25 @@ WaterLight::Light LightMap::at(vec3 point, vec3) const {
         y < static_cast<float>(texels_.height() - 1)))
     return {};
   const int i = static_cast<int>(x), j = static_cast<int>(y);
-  if (!first_.empty() && glm::dot(z_axis_, point) - z_origin_ < first_(i, j)) return {};
-  const Fractions* above = texels_.row(j) + i;
-  const Fractions* below = texels_.row(j + 1) + i;
   const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
   const float w00 = (1.0f - s) * (1.0f - t), w10 = s * (1.0f - t), w01 = (1.0f - s) * t, w11 = s * t;
+  float under = 1;
+  if (!level_.empty()) {
+    const float* above = level_.row(j) + i;
+    const float* below = level_.row(j + 1) + i;
+    const float level = w00 * above[0] + w10 * above[1] + w01 * below[0] + w11 * below[1];
+    under = std::min(1.0f, (level - glm::dot(up_, point)) / soft_);
+    if (!(under > 0)) return {};
+  }
+  const Fractions* above = texels_.row(j) + i;
+  const Fractions* below = texels_.row(j + 1) + i;
   Light light;
   light.sun = w00 * above[0].sun + w10 * above[1].sun + w01 * below[0].sun + w11 * below[1].sun;
   light.sky = w00 * above[0].sky + w10 * above[1].sky + w01 * below[0].sky + w11 * below[1].sky;
+  if (under < 1) {
+    light.sun = glm::mix(vec3{1.0f}, light.sun, under);
+    light.sky = glm::mix(vec3{1.0f}, light.sky, under);
+  }
   return light;
 }
 

@@ -13,10 +13,12 @@ class LightMap : public WaterLight {
     vec3 sun;
     vec3 sky;
   };
-  /// @param view  orthographic, along the sun's rays; of the texels' size
-  /// @param first  of the texels' size: where along the view the water begins, m; points before it are in full light.
-  ///               Empty: there are none
-  LightMap(const View& view, Image<Fractions> texels, Image<float> first = {});
+  /// @param view   orthographic, along the sun's rays; of the texels' size
+  /// @param up     unit
+  /// @param level  of the texels' size: height of the water along `up`, m, linear between texels; points above it are
+  ///               in full light. Empty: none are
+  /// @param soft   m under the level over which the full light becomes the texels', > 0
+  LightMap(const View& view, Image<Fractions> texels, vec3 up, Image<float> level, float soft);
   Light at(vec3 point, vec3 normal) const override;
 
  private:
@@ -24,9 +26,9 @@ class LightMap : public WaterLight {
   vec3 x_axis_, y_axis_;
   vec2 origin_;
   Image<Fractions> texels_;
-  Image<float> first_;
-  vec3 z_axis_;  ///< depth in m: z_axis_ . point - z_origin_
-  float z_origin_;
+  vec3 up_;
+  Image<float> level_;
+  float soft_;
 };
 
 /// Only what the water takes away of the sky's light, as soft_shadow() has it, in coarse texels; the sun's part is one.

@@ -21,6 +21,8 @@ constexpr float kMargin = 0.16f;
 constexpr float kSlopeBlur = 0.008f;
 constexpr float kPenumbra = 0.0045f;
 constexpr float kSkyBlur = 0.045f;
+/// Part of a texel, down from the waterline, over which the light above the water becomes that under it.
+constexpr float kSoftLine = 0.25f;
 /// Light is bent by no more than arriving along the surface: tan(90 deg - 48.6 deg).
 constexpr float kLargestBend = 0.88f;
 /// Real focal points are brighter than this; the slopes of a particle surface are not true enough to draw them.
@@ -96,28 +98,29 @@ Image<float> greatest(Image<float> image, int reach) {
   return image;
 }
 
-/// Where the water begins along the view, `margin` before it; beside it, at the height of the highest water within
-/// `reach`, and 0 farther off. Heights are compared, not depths: level water that the view sees aslant has one height.
-Image<float> beginning(const Surface& surface, const View& view, vec3 up, int reach, float margin) {
+/// Height of the water along `up` that each texel sees, m; beside it, of the highest water within `reach`, and of all
+/// of it farther off. Heights, not depths along the view: level water that the view sees aslant has one height, which
+/// its texels need not be fine to tell.
+Image<float> levels(const Surface& surface, const View& view, vec3 up, int reach) {
   const Image<float> depth = surface.see(view).depth;
   const float falls = glm::dot(view.forward, up);
-  const auto origin = [&](int x, int y) {
-    return glm::dot(view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}).origin, up);
-  };
   constexpr float kNone = -std::numeric_limits<float>::infinity();
-  Image<float> height(view.width, view.height, kNone);
-  for (int y = 0; y < view.height; ++y)
-    for (int x = 0; x < view.width; ++x)
-      if (depth(x, y) < 1e30f) height(x, y) = origin(x, y) + depth(x, y) * falls;
-  // A point between texels asks the one to its upper left: its neighbours count too.
-  const Image<float> here = greatest(height, 1), beside = greatest(std::move(height), reach);
-  Image<float> first(view.width, view.height);
+  Image<float> level(view.width, view.height, kNone);
+  float highest = kNone;
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) {
-      const float level = here(x, y) > kNone ? here(x, y) : beside(x, y);
-      if (level > kNone) first(x, y) = (level - origin(x, y)) / falls - margin;
+      if (!(depth(x, y) < 1e30f)) continue;
+      const vec3 origin = view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}).origin;
+      level(x, y) = glm::dot(origin, up) + depth(x, y) * falls;
+      highest = std::max(highest, level(x, y));
     }
-  return first;
+  if (!(highest > kNone)) return {};
+  const Image<float> near = greatest(level, 1), beside = greatest(level, reach);
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    if (level[i] > kNone) continue;
+    level[i] = near[i] > kNone ? near[i] : beside[i] > kNone ? beside[i] : highest;
+  }
+  return level;
 }
 
 /// No water: all light everywhere.
@@ -190,10 +193,9 @@ std::shared_ptr<const WaterLight> shadow(const Surface& surface, const Environme
       const vec3 sky_part = glm::clamp(1.0f - held_back * cover(x, y), vec3{0.0f}, vec3{1.0f});
       map(x, y) = {glm::mix(vec3{1.0f}, sun_part, presence), glm::mix(vec3{1.0f}, sky_part, presence)};
     }
-  Image<float> first;
-  if (on_bodies)
-    first = beginning(surface, view, ground.up, std::max(2, static_cast<int>(3.0f * kSkyBlur * texels)), texel);
-  return std::make_shared<LightMap>(view, std::move(map), std::move(first));
+  Image<float> level;
+  if (on_bodies) level = levels(surface, view, ground.up, std::max(2, static_cast<int>(3.0f * kSkyBlur * texels)));
+  return std::make_shared<LightMap>(view, std::move(map), ground.up, std::move(level), kSoftLine * texel);
 }
 
 }  // namespace

@@ -191,5 +191,25 @@ TEST(SoftShadow, BeginsAtTheWaterHoweverLowTheSun) {
   }
 }
 
+TEST(SoftShadow, MeetsASlopingBankAtTheWaterline) {
+  // However coarse the map, everywhere along the shore of still water under a sun aslant.
+  const float level = 0.5f;
+  const tests::AnalyticWater water = tests::flat_water({2, 2}, level);
+  const Environment environment = under_sun({0.6f, 0.7f, 0.35f});
+  const Material clay = material_preset("clay", 1.0f);
+  const vec3 normal = glm::normalize(vec3{-0.3f, 1, 0});
+  const auto bank = [&](float height, float along) { return vec3{0.2f + (height - level) / 0.3f, height, along}; };
+  const auto soft = soft_shadow(water, environment, Ground{}, clay, nullptr, {}, true);
+  const auto sky = sky_shadow(water, environment, Ground{}, clay, {}, true);
+  for (float along = -1; along < 1; along += 0.0037f) {
+    for (const auto& light : {soft, sky}) {
+      EXPECT_EQ(light->at(bank(level + 0.001f, along), normal).sun, vec3{1.0f}) << along;
+      EXPECT_EQ(light->at(bank(level + 0.001f, along), normal).sky, vec3{1.0f}) << along;
+      EXPECT_LT(light->at(bank(level - 0.015f, along), normal).sky.y, 0.9f) << along;
+    }
+    EXPECT_LT(soft->at(bank(level - 0.015f, along), normal).sun.y, 0.1f) << along;
+  }
+}
+
 }  // namespace
 }  // namespace meniscus
