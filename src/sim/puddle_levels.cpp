@@ -11,7 +11,7 @@ constexpr float kNone = -std::numeric_limits<float>::infinity();
 constexpr int kBeyond = 3;  ///< cells around a puddle that its level goes on for
 /// Depth, in parts of kPuddle, that a cell beyond the edge has at most: level water on rising ground has less, running
 /// water on an even slope dips under the ground so, and does not end at the edge of a cell.
-constexpr float kDeepest[kBeyond] = {0.3f, -0.5f, -1.3f};
+constexpr float kDeepest[kBeyond] = {1.0f, 0.3f, -0.6f};
 
 /// Whether a cell and those around it have a puddle's depth on average: one heavy drop on a film makes no puddle.
 bool in_puddle(const WetGround& ground, std::size_t i, std::size_t j) {
