@@ -16,7 +16,7 @@ constexpr double kWide = 20000;         ///< drops a second over the whole regio
 constexpr int kMostLayers = 24;
 constexpr double kLeast = 0.01;                ///< part of the drops far from the eye
 constexpr double kMostFar = 0.25;              ///< what those may be of all that are made
-constexpr double kWayOff = 0.02;               ///< m that a way's chord may stand off the way
+constexpr double kStepsOfWay = 64;             ///< through a field, from the top straight down, at most
 constexpr double kFar = 1e7;                   ///< m
 constexpr double kMostSeconds = 1e9;           ///< of start
 constexpr double kWaterRate = 1.0 / 3.6e6;     ///< m/s in a mm/h
@@ -135,12 +135,13 @@ Rain::Rain(const RainOptions& options) : options_((check(options), options)), wi
   const double rate = share_ * all * wide;
   parts->slot = kDropsPerSlot / std::max(rate, slowest);
   parts->number_below = poisson_below(rate * parts->slot);
-  // A chord of T s stands off a curve of acceleration a by a T^2 / 8; gusts have hardly more than twice their
-  // deviation.
-  const double gusts = 2.0 * wind_.gust_acceleration();
-  parts->ways_apart = gusts > 0 ? std::sqrt(8 * kWayOff / gusts) : 1e30;
-  parts->step_length =
-      std::min(double{options.top} / 8, std::max(0.25 * double{wind_.finest()}, 1e-3 * double{options.top}));
+  parts->step_length = std::clamp(double{wind_.finest()}, double{options.top} / kStepsOfWay, double{options.top} / 8);
+  WindOptions calm = options_.wind;
+  calm.gust = 0;
+  const bool gusty = options_.wind.gust > 0;
+  const Wind& steady = gusty ? parts->calm.emplace(calm) : wind_;
+  if (gusty) parts->gusts = std::make_unique<const GustTable>(wind_, steady, options_.wind, options.start);
+  parts->rise = steady.carried(0, 1)[parts->axes.up];
   parts_ = std::move(parts);
 }
 

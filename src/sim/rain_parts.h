@@ -1,12 +1,15 @@
 /// What Rain works out once.
 #pragma once
 
+#include <algorithm>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/field_axes.h"
 #include "meniscus/sim.h"
+#include "sim/gust_table.h"
 #include "sim/rain_spectrum.h"
 #include "sim/rain_thinning.h"
 #include "sim/rain_tiles.h"
@@ -18,17 +21,25 @@ namespace meniscus {
 struct Rain::Parts {
   RainSpectrum spectrum;
   FieldAxes axes;
-  double slot = 0;                        ///< s
-  std::vector<double> number_below = {};  ///< probability of at most i drops in a slot
-  double ways_apart = 0.05;               ///< s between points of a way in gusts
-  double step_length = 0;                 ///< m, of a way through a field
-  std::vector<RainDrop> single = {};      ///< beside the rain, in order of time
+  double slot = 0;                              ///< s
+  std::vector<double> number_below = {};        ///< probability of at most i drops in a slot
+  std::optional<Wind> calm = {};                ///< the wind without gusts
+  std::unique_ptr<const GustTable> gusts = {};  ///< null: none
+  double rise = 0;                              ///< m/s of uniform wind upwards
+  double step_length = 0;                       ///< m, of a way through a field
+  std::vector<RainDrop> single = {};            ///< beside the rain, in order of time
   // With an eye.
   std::optional<RainThinning> thinning = {};
   std::optional<RainLayer> wide = {};   ///< the drops that are made over the whole region
   std::optional<RainTiles> tiles = {};  ///< those that are made near the eye
   double kept = 1;                      ///< part of the share of the drops that is made, with the eye over the middle
 
+  const Wind& steady(const Wind& wind) const { return calm ? *calm : wind; }
+  /// How fast a drop comes down in uniform wind, m/s.
+  double down(const RainDrop& drop) const {
+    const double fall = fall_speed(drop.diameter);
+    return std::max(fall - rise, 0.1 * fall);
+  }
   /// Drops of the slots over the whole region after `low` and not after `high`, in order of time; with an eye their
   /// weights are u.
   std::vector<RainDrop> from_slots(const Rain& rain, double low, double high) const;
