@@ -54,10 +54,10 @@ for figure in "${figures[@]}"; do
       beside 9b "${names[@]}"
       ;;
     10)
-      draw 10_splashes street 60 1280x720 --only-splashes
-      draw 10_all street 60 1280x720
-      for name in 10_splashes 10_all; do  # the near half of the street, pixel by pixel: splashes are small
-        ffmpeg -v error -y -i "$work/$name.png" -vf "crop=iw*0.35:ih*0.45:iw*0.35:ih*0.5" "$work/${name}_near.png"
+      draw 10_splashes street 20 1120x630 --only-splashes
+      draw 10_all street 20 1120x630
+      for name in 10_splashes 10_all; do  # the middle of the street, pixel by pixel: splashes are small
+        ffmpeg -v error -y -i "$work/$name.png" -vf "crop=iw*0.5:ih*0.6:iw*0.25:ih*0.3" "$work/${name}_near.png"
       done
       beside 10 10_splashes_near 10_all_near
       ;;
