@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 program=build/release/meniscus
 size=640x360
-qualities="27 30 33 36"
+qualities="19 22 25 28 32"
 while (($#)); do
   case $1 in
     --size) size=$2 && shift 2 ;;
