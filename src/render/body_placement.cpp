@@ -86,4 +86,15 @@ ObstacleShape obstacle_shape_of(const Mesh& mesh, const std::string& name, const
   return mesh_shape(mesh, placement.shape);
 }
 
+Bounds bounds_of(const PlacedSolid& body) {
+  const Bounds box = body.solid->bounds();
+  Bounds placed;
+  for (int corner = 0; corner < 8; ++corner) {
+    const vec3 point{corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                     corner & 4 ? box.high.z : box.low.z};
+    placed.add(vec3(body.world_from_solid * glm::vec4(point, 1.0f)));
+  }
+  return placed;
+}
+
 }  // namespace meniscus

@@ -9,6 +9,7 @@
 namespace meniscus {
 
 struct Mesh;
+struct PlacedSolid;
 
 /// matrix = pose * scale, where the matrix turns, moves and scales along the body's own axes.
 struct BodyPlacement {
@@ -28,5 +29,8 @@ glm::mat4 matrix_of(const Pose& pose);
 /// @param solid  its mesh
 /// @param name   "box", "sphere" or "cylinder"; else it is a mesh
 ObstacleShape obstacle_shape_of(const Mesh& mesh, const std::string& name, const BodyPlacement& placement);
+
+/// Box around the corners of a placed body's box, m.
+Bounds bounds_of(const PlacedSolid& body);
 
 }  // namespace meniscus

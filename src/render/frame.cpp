@@ -65,14 +65,14 @@ std::optional<Particles> kept_of(const Particles& all, const FrameSettings& sett
 }  // namespace
 
 DryScene dry_scene(const FrameSettings& settings, StageTimes* times) {
-  DryScene dry{Scene(settings.environment, settings.ground), Scene(settings.environment, settings.ground)};
+  Scene bodies(settings.environment, settings.ground);
   if (!settings.solids.empty() || settings.tank.style != TankStyle::none) {
     const StageTimer timer(times, "scene");
-    dry.bodies.set_tank(settings.tank);
-    dry.bodies.set_solids(settings.solids);
+    bodies.set_tank(settings.tank);
+    bodies.set_solids(settings.solids);
   }
-  dry.bodies.set_lamps(settings.lamps);
-  dry.scene = dry.bodies;
+  bodies.set_lamps(settings.lamps);
+  DryScene dry{bodies, bodies};
   const std::shared_ptr<const Solid> relief = settings.rain ? settings.rain->relief() : nullptr;
   if (relief) {
     const StageTimer timer(times, "scene");

@@ -1,12 +1,17 @@
 /// The guesses one by one, as settings_of() takes them and guesses_of() tells them.
 #pragma once
 
+#include <algorithm>
+
 #include "meniscus/render.h"
 
 namespace meniscus {
 
 /// Fewer particles than this are a few drops, which stand on no floor.
 constexpr std::size_t kFewParticles = 64;
+
+/// The largest coordinate.
+inline float longest_of(vec3 v) { return std::max({v.x, v.y, v.z}); }
 
 std::string material_name(const PictureOptions& options);
 /// m; positive even without particles.

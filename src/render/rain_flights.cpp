@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/field_axes.h"
+#include "render/body_placement.h"
 #include "render/rain_ground.h"
 
 namespace meniscus {
@@ -23,16 +24,6 @@ struct Leg {
   float length;
 };
 
-Bounds placed_bounds(const PlacedSolid& body) {
-  const Bounds box = body.solid->bounds();
-  Bounds placed;
-  for (int corner = 0; corner < 8; ++corner)
-    placed.add(
-        vec3(body.world_from_solid * glm::vec4(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                               corner & 4 ? box.high.z : box.low.z, 1.0f)));
-  return placed;
-}
-
 bool same(const PlacedSolid& a, const PlacedSolid& b) {
   return a.solid == b.solid && a.world_from_solid == b.world_from_solid;
 }
@@ -42,8 +33,8 @@ Bounds changed(std::span<const PlacedSolid> before, std::span<const PlacedSolid>
   Bounds box;
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
     if (i < before.size() && i < now.size() && same(before[i], now[i])) continue;
-    if (i < before.size()) box.add(placed_bounds(before[i]));
-    if (i < now.size()) box.add(placed_bounds(now[i]));
+    if (i < before.size()) box.add(bounds_of(before[i]));
+    if (i < now.size()) box.add(bounds_of(now[i]));
   }
   return box;
 }

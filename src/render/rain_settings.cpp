@@ -18,8 +18,6 @@ constexpr float kAbove = 3;         ///< m above everything from where drops are
 constexpr std::size_t kOrbitEyes = 256;
 constexpr float kBelow = 0.01f;  ///< m under the lowest that they end
 
-float longest_of(vec3 v) { return std::max({v.x, v.y, v.z}); }
-
 /// Where the camera goes.
 Bounds eyes_of(const Survey& survey, const PictureOptions& options) {
   Bounds eyes;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "meniscus/render.h"
+#include "render/body_placement.h"
 #include "render/rainy_frame.h"
 
 namespace meniscus {
@@ -34,18 +35,6 @@ std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable)
     shots.push_back(
         {frame, by_name ? *frame.number : static_cast<std::int64_t>(shots.size()), frame.place.value_or(shots.size())});
   return shots;
-}
-
-/// Box around a placed body.
-Bounds bounds_of(const PlacedSolid& body) {
-  const Bounds box = body.solid->bounds();
-  Bounds placed;
-  for (int corner = 0; corner < 8; ++corner) {
-    const vec3 point{corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                     corner & 4 ? box.high.z : box.low.z};
-    placed.add(vec3(body.world_from_solid * glm::vec4(point, 1.0f)));
-  }
-  return placed;
 }
 
 void check(const OutputTarget& target, std::size_t pictures) {

@@ -17,8 +17,6 @@ float round_length(float length) {
   return power * (mantissa < 1.42f ? 1.0f : mantissa < 3.17f ? 2.0f : mantissa < 7.08f ? 5.0f : 10.0f);
 }
 
-float longest_of(vec3 v) { return std::max({v.x, v.y, v.z}); }
-
 Material material_of(const Survey& survey, const PictureOptions& options) {
   const float scale = depth_scale(survey, options);
   Material material = material_preset(material_name(options), scale);

@@ -9,6 +9,7 @@
 
 #include "base/random.h"
 #include "meniscus/sim.h"
+#include "refused.h"
 
 namespace meniscus {
 namespace {
@@ -438,15 +439,6 @@ TEST(Rain, BringsSingleDropsWhereAndWhenTheyAreAskedFor) {
   for (const RainDrop& one : without) {
     EXPECT_EQ(ids.count(one.id), 1u);
     EXPECT_NEAR(both.volume(one), 4 * water(one.diameter), 1e-6 * water(one.diameter));
-  }
-}
-
-void expect_refused(const std::function<void()>& call, ErrorCode code = ErrorCode::invalid_argument) {
-  try {
-    call();
-    FAIL() << "not refused";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code) << error.what();
   }
 }
 

@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "meniscus/formulas/rain.h"
 #include "meniscus/sim.h"
+#include "refused.h"
 
 namespace meniscus {
 namespace {
@@ -451,15 +452,6 @@ TEST(Ripples, TakeHitsBesideTheWaterForNothing) {
   dry.hit({0.5f, 0, 0.5f}, 0.002f, 6.5f);
   dry.advance(1);
   EXPECT_EQ(largest_of(dry), 0);
-}
-
-void expect_refused(const std::function<void()>& call, ErrorCode code = ErrorCode::invalid_argument) {
-  try {
-    call();
-    FAIL() << "not refused";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code) << error.what();
-  }
 }
 
 TEST(Ripples, RefuseWhatCannotBe) {
