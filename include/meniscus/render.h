@@ -599,4 +599,14 @@ std::string scene_of_written_frames(const std::string& scene_path, const std::st
 /// @throws Error invalid_argument: count of 0
 Particles synthetic_tank(std::size_t count, std::uint64_t seed = 1);
 
+/// A water crown in a shallow pool (y up), of the same shape at every count: a floor of water of 2 x 2 m with ring
+/// waves, from which a thin conical sheet rises to a rim with jets, and drops thrown from the jets. Lengths that do not
+/// follow the shape (the thickness of the sheet, at least three spacings) are said in the definition. Particles stand
+/// on a lattice, each displaced by up to 0.2 spacings along each axis, in the lattice's order: coherent, as solvers
+/// that sort their particles write them. The same `count` and `seed` give the same particles; exactly `count` of them.
+/// @throws Error invalid_argument: count of less than 1000
+Particles synthetic_crown(std::size_t count, std::uint64_t seed = 1);
+/// The camera that the crown is measured with: from above at a slant, the crown in the middle, water in most pixels.
+View crown_view(int width, int height);
+
 }  // namespace meniscus

@@ -112,16 +112,45 @@ struct RaycastOptions {
   bool want_normals = true;
 };
 
+/// Sizes of single particles, for clouds of unequal ones. Either may be empty.
+struct ParticleSizes {
+  /// m, one a particle, > 0: edge of the cube of water that it stands for (twice its radius); else that of the options.
+  std::span<const float> spacing;
+  /// m, one a particle: support of its kernel; else its spacing times that of the options by theirs.
+  std::span<const float> smoothing_length;
+
+  bool empty() const { return spacing.empty() && smoothing_length.empty(); }
+};
+
 /// The iso-surface of the particles' density, cast along rays.
 /// @param colours  one linear colour a particle, or empty
-/// @throws Error   invalid_argument: an option outside its range, colours of another number than the particles
+/// @param sizes    read during the call only; the radius of the normals follows a particle's spacing
+/// @throws Error   invalid_argument: an option outside its range, colours or sizes of another number than the
+/// particles,
+///                 sizes outside their range
 std::unique_ptr<Surface> make_raycast_surface(const Particles& particles, const RaycastOptions& options,
-                                              std::span<const vec3> colours = {}, StageTimes* times = nullptr);
+                                              std::span<const vec3> colours = {}, StageTimes* times = nullptr,
+                                              const ParticleSizes& sizes = {});
 
 /// The same surface by the plain method: every particle splatted, every sum by one scalar loop over the cells
 /// around a sample, one ray after another on the calling thread. What the fast one is checked and timed against.
 std::unique_ptr<Surface> make_plain_raycast_surface(const Particles& particles, const RaycastOptions& options,
-                                                    std::span<const vec3> colours = {}, StageTimes* times = nullptr);
+                                                    std::span<const vec3> colours = {}, StageTimes* times = nullptr,
+                                                    const ParticleSizes& sizes = {});
+
+/// What a ray-cast surface would take, before it is made.
+struct RaycastEstimate {
+  std::uint64_t build_bytes = 0;  ///< at most held at once while it is made, beside the particles
+  std::uint64_t kept_bytes = 0;   ///< by the finished surface
+  std::uint64_t view_bytes = 0;   ///< more, while it is seen through a view of `pixels`, its buffers included
+  /// Operations in units that a machine's speed can be set against: particles gone through, particles kept, pixels.
+  double particles = 0, kept = 0, pixels = 0;
+};
+/// @param count   particles
+/// @param bounds  m, of them
+/// @param pixels  of the view
+RaycastEstimate estimate_raycast(std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
+                                 std::uint64_t pixels);
 
 // --- Point-sampled surfaces [Iwasaki2008] --------------------------------------------------------------------
 

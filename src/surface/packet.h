@@ -25,10 +25,12 @@ class AlignedFloats {
   std::size_t capacity_ = 0;
 };
 
-/// Particles near a packet: positions relative to nothing (world space), masses, sorted indices.
-/// One for each thread, kept from packet to packet.
+/// Particles near a packet: positions relative to nothing (world space), masses, and where particles have sizes of
+/// their own (RaycastField::has_sizes) also 1 / h_j and 1 / R_j, 1/m, of kernel and normals; their masses then carry
+/// the factor s_j^3 W(0, h_j) / field.scale. One for each thread, kept from packet to packet.
 struct PacketList {
   AlignedFloats x, y, z, mass, red, green, blue;
+  AlignedFloats per_smoothing, per_normal_radius;  ///< as long as the others if field.has_sizes(), else not used
   std::size_t count = 0;
   void reserve(std::size_t wanted, bool colours);
 };

@@ -11,6 +11,8 @@
 #include "surface/masses.h"
 #include "surface/normal_filter.h"
 #include "surface/packet.h"
+#include "surface/picture_march.h"
+#include "surface/picture_normals.h"
 #include "surface/splat.h"
 #include "surface/thickness.h"
 
@@ -18,72 +20,6 @@ namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// Sixteen picture points that are drawn together, and where their results go.
-struct Block {
-  vec2 points[kPacket];
-  std::size_t targets[kPacket];
-  PacketMask mask = 0;
-};
-
-/// Gives the packet's rays; lanes that are not in the mask repeat the first one that is.
-void set_rays(const View& view, const Block& block, PacketRays& rays) {
-  const int first = __builtin_ctz(block.mask);
-  for (int l = 0; l < kPacket; ++l) {
-    const Ray ray = view.ray(block.points[(block.mask >> l) & 1u ? l : first]);
-    rays.ox[l] = ray.origin.x;
-    rays.oy[l] = ray.origin.y;
-    rays.oz[l] = ray.origin.z;
-    rays.dx[l] = ray.direction.x;
-    rays.dy[l] = ray.direction.y;
-    rays.dz[l] = ray.direction.z;
-  }
-}
-
-/// Calls visit(block) for tiles of 4 x 4 pixels of the picture in parallel, or for sixteen points after another.
-template <class Visit>
-void for_each_block(const View& view, std::span<const vec2> points, Visit visit) {
-  if (!points.empty()) {
-    parallel_for((points.size() + kPacket - 1) / kPacket, 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t at = begin; at < end; ++at) {
-        Block block;
-        for (std::size_t l = 0; l < kPacket; ++l) {
-          const std::size_t i = at * kPacket + l;
-          if (i >= points.size()) break;
-          block.points[l] = points[i];
-          block.targets[l] = i;
-          block.mask |= 1u << l;
-        }
-        visit(block);
-      }
-    });
-    return;
-  }
-  constexpr int kSide = 4;
-  const auto tiles_x = static_cast<std::size_t>((view.width + kSide - 1) / kSide);
-  const auto tiles_y = static_cast<std::size_t>((view.height + kSide - 1) / kSide);
-  parallel_for(tiles_y * tiles_x, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t tile = begin; tile < end; ++tile) {
-      const int x0 = static_cast<int>(tile % tiles_x) * kSide, y0 = static_cast<int>(tile / tiles_x) * kSide;
-      Block block;
-      for (int l = 0; l < kPacket; ++l) {
-        const int x = x0 + l % kSide, y = y0 + l / kSide;
-        if (x >= view.width || y >= view.height) continue;
-        block.points[l] = {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
-        block.targets[l] =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
-        block.mask |= 1u << l;
-      }
-      visit(block);
-    }
-  });
-}
-
-/// Kept by each thread from one packet to the next.
-PacketList& thread_list() {
-  thread_local PacketList list;
-  return list;
-}
 
 PacketPoints points_of(vec3 p) {
   PacketPoints points;
@@ -165,7 +101,8 @@ class RaycastSurface final : public Surface {
   bool starts_inside(const View& view) const {
     if (view.projection != Projection::perspective || field_.grid.size() == 0) return false;
     alignas(64) float density[kPacket];
-    density_packet(field_, points_of(view.eye), 1u, false, thread_list(), density);
+    PacketList list;
+    density_packet(field_, points_of(view.eye), 1u, false, list, density);
     return density[0] >= field_.options.iso;
   }
 
@@ -213,40 +150,14 @@ class RaycastSurface final : public Surface {
 
   /// Depth, normals and colours from the entries; all images as large as buffers.entry.
   void find_surface(const View& view, std::span<const vec2> points, SurfaceBuffers& buffers, StageTimes* times) const {
-    const int width = buffers.entry.width(), height = buffers.entry.height();
-    buffers.depth = Image<float>(width, height, kInfinity);
-    buffers.coverage = Image<float>(width, height, 0.0f);
     {
       StageTimer timer(times, "march");
-      for_each_block(view, points, [&](const Block& block) {
-        alignas(64) float entry[kPacket], exit[kPacket], depth[kPacket];
-        PacketMask mask = 0;
-        for (int l = 0; l < kPacket; ++l) {
-          entry[l] = exit[l] = 0.0f;
-          if (!((block.mask >> l) & 1u)) continue;
-          entry[l] = buffers.entry[block.targets[l]];
-          exit[l] = buffers.exit[block.targets[l]];
-          if (entry[l] <= exit[l]) mask |= 1u << l;
-        }
-        if (mask == 0) return;
-        PacketRays rays;
-        set_rays(view, block, rays);
-        for (int l = 0; l < kPacket; ++l)
-          if (!((mask >> l) & 1u)) entry[l] = entry[__builtin_ctz(mask)];
-        march_packet(field_, rays, mask, entry, exit, buffers.eye_in_water, thread_list(), depth);
-        for (int l = 0; l < kPacket; ++l)
-          if (((mask >> l) & 1u) && depth[l] < kInfinity) {
-            buffers.depth[block.targets[l]] = depth[l];
-            buffers.coverage[block.targets[l]] = 1.0f;
-          }
-      });
+      march_picture(field_, view, points, buffers);
     }
     if (!field_.options.want_normals) return;
     {
       StageTimer timer(times, "normals");
-      buffers.normal = Image<vec3>(width, height, vec3{0});
-      if (field_.has_colours()) buffers.colour = Image<vec3>(width, height, vec3{0});
-      for_each_block(view, points, [&](const Block& block) { find_normals(view, block, buffers); });
+      find_picture_normals(field_, view, points, buffers);
     }
     if (!points.empty() || field_.options.filter_radius == 0) return;
     StageTimer timer(times, "filter");
@@ -255,38 +166,6 @@ class RaycastSurface final : public Surface {
   }
 
   float filter_tolerance() const { return 0.5f * field_.options.spacing; }
-
-  void find_normals(const View& view, const Block& block, SurfaceBuffers& buffers) const {
-    PacketMask mask = 0;
-    for (int l = 0; l < kPacket; ++l)
-      if (((block.mask >> l) & 1u) && buffers.depth[block.targets[l]] < kInfinity) mask |= 1u << l;
-    if (mask == 0) return;
-    PacketPoints points, towards, normals;
-    for (int l = 0; l < kPacket; ++l) {
-      const int lane = (mask >> l) & 1u ? l : __builtin_ctz(mask);
-      const Ray ray = view.ray(block.points[lane]);
-      const vec3 point = ray.origin + buffers.depth[block.targets[lane]] * ray.direction;
-      points.x[l] = point.x;
-      points.y[l] = point.y;
-      points.z[l] = point.z;
-      towards.x[l] = -ray.direction.x;
-      towards.y[l] = -ray.direction.y;
-      towards.z[l] = -ray.direction.z;
-    }
-    normals_packet(field_, points, mask, towards, thread_list(), normals);
-    for (int l = 0; l < kPacket; ++l)
-      if ((mask >> l) & 1u) {
-        // A ray that starts in the water meets the face that the view's plane cuts.
-        const bool cut = buffers.depth[block.targets[l]] <= 0.0f && !buffers.eye_in_water;
-        buffers.normal[block.targets[l]] =
-            cut ? vec3{towards.x[l], towards.y[l], towards.z[l]} : vec3{normals.x[l], normals.y[l], normals.z[l]};
-      }
-    if (!field_.has_colours()) return;
-    PacketPoints colours;
-    colours_packet(field_, points, mask, thread_list(), colours);
-    for (int l = 0; l < kPacket; ++l)
-      if ((mask >> l) & 1u) buffers.colour[block.targets[l]] = {colours.x[l], colours.y[l], colours.z[l]};
-  }
 
   RaycastField field_;
   SphereSet spheres_;
@@ -297,7 +176,9 @@ class RaycastSurface final : public Surface {
 }  // namespace
 
 std::unique_ptr<Surface> make_raycast_surface(const Particles& particles, const RaycastOptions& options,
-                                              std::span<const vec3> colours, StageTimes* times) {
+                                              std::span<const vec3> colours, StageTimes* times,
+                                              const ParticleSizes& sizes) {
+  static_cast<void>(sizes);
   return std::make_unique<RaycastSurface>(particles, options, colours, times);
 }
 

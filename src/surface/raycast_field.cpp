@@ -98,7 +98,7 @@ RaycastField make_field(const Particles& particles, const RaycastOptions& given,
   if (!colours.empty() && colours.size() != particles.size())
     throw Error(ErrorCode::invalid_argument,
                 fmt::format("{} colours were given for {} particles", colours.size(), particles.size()));
-  RaycastField field{options, ParticleGrid(particles, options.smoothing_length), {}, {}, {}, {}, {}, {}, 0, 0};
+  RaycastField field{options, ParticleGrid(particles, options.smoothing_length), {}, {}, {}, {}, {}, {}, 0, 0, {}, {}, {}};
   const float volume = options.spacing * options.spacing * options.spacing;
   field.scale = volume * kernel_value(options.kernel, 0.0f, options.smoothing_length);
   field.step = options.step * options.smoothing_length;

@@ -7,8 +7,13 @@
 namespace meniscus {
 
 /// The density field of the particles, relative to the density inside the water:
-///   rho(x) = spacing^3 sum_j m_j W(|x - p_j|, h)                                            [Xiao2017] eq. 1
-/// so that the iso-value has no units: a lattice of the given spacing has rho = 1.
+///   rho(x) = sum_j m_j s_j^3 W(|x - p_j|, h_j)                                              [Xiao2017] eq. 1
+/// with the spacing s_j and smoothing length h_j of particle j, which are those of the options for all unless the
+/// particles have sizes of their own, so that the iso-value has no units: a lattice of the given spacing has rho = 1.
+///
+/// Particles of different sizes are kept in levels: this field holds those with the smallest smoothing lengths, each
+/// field in `coarser` those of up to twice the ones before, sorted by cells of their own. Sums run over all levels;
+/// options, scale and step of a coarser level are those that its largest particle has.
 struct RaycastField {
   RaycastOptions options;  ///< checked, every length resolved
   ParticleGrid grid;
@@ -18,8 +23,13 @@ struct RaycastField {
   std::vector<std::uint8_t> hidden;     ///< by cell: no ray sees its particles before others; may be empty
   float scale = 0;                      ///< spacing^3 W(0, h): what a unit mass adds to rho at its own place
   float step = 0;                       ///< m, of the march
+  /// Of particles with sizes of their own, by sorted index, padded: options.spacing / s_j (which is also R / R_j of the
+  /// normals) and options.smoothing_length / h_j; empty where all are alike.
+  std::vector<float> per_spacing, per_smoothing;
+  std::vector<RaycastField> coarser;  ///< levels of larger particles, ascending; empty where all are alike
 
   bool has_colours() const { return !red.empty(); }
+  bool has_sizes() const { return !per_spacing.empty(); }
   bool is_hidden(std::size_t cell) const { return !hidden.empty() && hidden[cell] != 0; }
 };
 

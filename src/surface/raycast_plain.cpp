@@ -327,7 +327,9 @@ Image<vec3> PlainRaycastSurface::filtered(const SurfaceBuffers& buffers, const s
 }  // namespace
 
 std::unique_ptr<Surface> make_plain_raycast_surface(const Particles& particles, const RaycastOptions& options,
-                                                    std::span<const vec3> colours, StageTimes* times) {
+                                                    std::span<const vec3> colours, StageTimes* times,
+                                                    const ParticleSizes& sizes) {
+  static_cast<void>(sizes);
   return std::make_unique<PlainRaycastSurface>(particles, options, colours, times);
 }
 
