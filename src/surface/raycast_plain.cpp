@@ -7,6 +7,7 @@
 #include "meniscus/formulas/eigen.h"
 #include "meniscus/formulas/kernels.h"
 #include "surface/normal_filter.h"
+#include "surface/particle_sizes.h"
 #include "surface/raycast_field.h"
 
 namespace meniscus {
@@ -16,20 +17,21 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class PlainRaycastSurface final : public Surface {
  public:
-  PlainRaycastSurface(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours,
+  PlainRaycastSurface(const Particles& particles, const ResolvedSizes& own, std::span<const vec3> colours,
                       StageTimes* times)
       : field_([&] {
           StageTimer timer(times, "sort");
-          return make_field(particles, options, colours);
+          return make_field(particles, own.options, colours);  // cells of the largest smoothing length
         }()) {
+    take_sizes(own);
     StageTimer timer(times, "masses");
     if (!field_.options.keep_thin) return;
-    const MassRule rule = mass_rule(field_.options);
+    SizedMassRules rules(field_.options);
     std::vector<float> mass(field_.mass);
     for (std::size_t i = 0; i < field_.grid.size(); ++i) {
       const float density = density_at(field_.grid.position(i));
-      mass[i] = mass_at(rule, density);
-      field_.entry_radius[i] = entry_radius_at(field_.options, density);
+      mass[i] = mass_at(rules.rule(spacing_[i], smoothing_[i]), density);
+      field_.entry_radius[i] = entry_radius_at(options_of(i), density);
     }
     field_.mass = std::move(mass);
   }
@@ -79,12 +81,12 @@ class PlainRaycastSurface final : public Surface {
 
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "thickness");
-    const float s = field_.options.spacing, r = thickness_radius(field_.options);
-    const float weight = s * s * s / (4.0f / 3.0f * 3.14159265f * r * r * r);
     const std::vector<Ray> rays = rays_of(view, points);
     Image<float> sum(points.empty() ? view.width : static_cast<int>(points.size()), points.empty() ? view.height : 1);
     for (std::size_t i = 0; i < field_.grid.size(); ++i) {
       const vec3 centre = field_.grid.position(i);
+      const float s = spacing_[i], r = thickness_radius(options_of(i));
+      const float weight = s * s * s / (4.0f / 3.0f * 3.14159265f * r * r * r);
       for_each_covered(view, points, centre, r, [&](std::size_t pixel) {
         const Chord chord = chord_of(rays[pixel], centre, r);
         if (chord.leave > chord.enter) sum[pixel] += weight * (chord.leave - chord.enter);
@@ -95,7 +97,30 @@ class PlainRaycastSurface final : public Surface {
 
   Bounds bounds() const override { return field_.grid.bounds().grown(field_.options.smoothing_length); }
 
+  float spacing() const override { return least_spacing_; }
+
  private:
+  /// Steps are those of the smallest particle.
+  void take_sizes(const ResolvedSizes& own) {
+    spacing_.assign(field_.grid.size(), field_.options.spacing);
+    smoothing_.assign(field_.grid.size(), field_.options.smoothing_length);
+    least_spacing_ = field_.options.spacing;
+    if (own.empty()) return;
+    float least = field_.options.smoothing_length;
+    for (std::size_t i = 0; i < field_.grid.size(); ++i) {
+      const std::size_t given = field_.grid.given_index(i);
+      spacing_[i] = own.spacing[given];
+      smoothing_[i] = own.smoothing_length[given];
+      least = std::min(least, smoothing_[i]);
+      least_spacing_ = std::min(least_spacing_, spacing_[i]);
+      field_.entry_radius[i] = entry_radius_at(options_of(i), 1.0f);
+    }
+    field_.step = field_.options.step * least;
+  }
+
+  RaycastOptions options_of(std::size_t i) const { return options_of_size(field_.options, spacing_[i], smoothing_[i]); }
+  float volume_of(std::size_t i) const { return spacing_[i] * spacing_[i] * spacing_[i]; }
+
   struct Chord {
     float enter = kInfinity, leave = -kInfinity;
   };
@@ -176,20 +201,18 @@ class PlainRaycastSurface final : public Surface {
   }
 
   float density_at(vec3 point) const {
-    const float h = field_.options.smoothing_length;
-    const float volume = field_.options.spacing * field_.options.spacing * field_.options.spacing;
     float sum = 0;
-    for_each_neighbour(
-        point, h, [&](std::size_t j, float r) { sum += field_.mass[j] * kernel_value(field_.options.kernel, r, h); });
-    return volume * sum;
+    for_each_neighbour(point, field_.options.smoothing_length, [&](std::size_t j, float r) {
+      sum += field_.mass[j] * volume_of(j) * kernel_value(field_.options.kernel, r, smoothing_[j]);
+    });
+    return sum;
   }
 
   vec3 colour_at(vec3 point) const {
-    const float h = field_.options.smoothing_length;
     vec3 sum{0};
     float weights = 1e-12f;
-    for_each_neighbour(point, h, [&](std::size_t j, float r) {
-      const float weight = field_.mass[j] * formulas::cubic_spline(r, h) / formulas::cubic_spline(0.0f, h);
+    for_each_neighbour(point, field_.options.smoothing_length, [&](std::size_t j, float r) {
+      const float weight = field_.mass[j] * volume_of(j) * formulas::cubic_spline(r, smoothing_[j]);
       sum += weight * vec3{field_.red[j], field_.green[j], field_.blue[j]};
       weights += weight;
     });
@@ -252,28 +275,33 @@ class PlainRaycastSurface final : public Surface {
   }
 
   vec3 normal_at(vec3 point, vec3 towards) const {
-    const float R = field_.options.normal_radius;
-    // Eq. 2
+    const float largest = field_.options.normal_radius, per_spacing = largest / field_.options.spacing;
+    // Eq. 2; each particle counts by its volume and to its own radius, both in units of the largest one's.
     vec3 gradient{0};
     float weights = 0;
     vec3 mean{0};
     int neighbours = 0;
-    for_each_neighbour(point, R, [&](std::size_t j, float r) {
+    for_each_neighbour(point, largest, [&](std::size_t j, float r) {
+      const float R = per_spacing * spacing_[j], part = spacing_[j] / field_.options.spacing;
+      if (r >= R) return;
+      const float volume = part * part * part;
       const vec3 off = field_.grid.position(j) - point;
-      gradient += formulas::spiky_slope(r, R) / std::max(r, 1e-6f * R) * -off;
-      weights += formulas::pca_weight(r, R);
-      mean += formulas::pca_weight(r, R) * off;
+      gradient += volume * formulas::spiky_slope(r, R) / std::max(r, 1e-6f * R) * -off;
+      weights += volume * formulas::pca_weight(r, R);
+      mean += volume * formulas::pca_weight(r, R) * off;
       ++neighbours;
     });
     const vec3 outwards = -gradient;
     vec3 normal = glm::dot(outwards, outwards) > 0.0f ? glm::normalize(outwards) : towards;
     if (field_.options.normals == NormalMethod::gradient || neighbours < kFewestNeighboursForPca) return normal;
-    // Eq. 3 and 4, in units of R.
+    // Eq. 3 and 4, in units of the largest R.
     mean /= weights;
     formulas::Symmetric3 covariance{0, 0, 0, 0, 0, 0};
-    for_each_neighbour(point, R, [&](std::size_t j, float r) {
-      const vec3 off = (field_.grid.position(j) - point - mean) / R;
-      const float w = formulas::pca_weight(r, R) / weights;
+    for_each_neighbour(point, largest, [&](std::size_t j, float r) {
+      const float R = per_spacing * spacing_[j], part = spacing_[j] / field_.options.spacing;
+      if (r >= R) return;
+      const vec3 off = (field_.grid.position(j) - point - mean) / largest;
+      const float w = part * part * part * formulas::pca_weight(r, R) / weights;
       covariance.xx += w * off.x * off.x;
       covariance.yy += w * off.y * off.y;
       covariance.zz += w * off.z * off.z;
@@ -295,11 +323,13 @@ class PlainRaycastSurface final : public Surface {
   Image<vec3> filtered(const SurfaceBuffers& buffers, const std::vector<Ray>& rays) const;
 
   RaycastField field_;
+  std::vector<float> spacing_, smoothing_;  ///< m, by sorted index
+  float least_spacing_ = 0;
 };
 
 Image<vec3> PlainRaycastSurface::filtered(const SurfaceBuffers& buffers, const std::vector<Ray>& rays) const {
   const int radius = field_.options.filter_radius, width = buffers.depth.width(), height = buffers.depth.height();
-  const float sigma = 0.5f * static_cast<float>(radius), tolerance = 0.5f * field_.options.spacing;
+  const float sigma = 0.5f * static_cast<float>(radius), tolerance = 0.5f * least_spacing_;
   Image<vec3> result(width, height, vec3{0});
   const auto point_at = [&](int x, int y) {
     const Ray& ray = rays[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
@@ -329,8 +359,8 @@ Image<vec3> PlainRaycastSurface::filtered(const SurfaceBuffers& buffers, const s
 std::unique_ptr<Surface> make_plain_raycast_surface(const Particles& particles, const RaycastOptions& options,
                                                     std::span<const vec3> colours, StageTimes* times,
                                                     const ParticleSizes& sizes) {
-  static_cast<void>(sizes);
-  return std::make_unique<PlainRaycastSurface>(particles, options, colours, times);
+  return std::make_unique<PlainRaycastSurface>(particles, resolve_sizes(sizes, options, particles.size()), colours,
+                                               times);
 }
 
 }  // namespace meniscus
