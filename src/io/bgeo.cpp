@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "io/frame_head.h"
 #include "io/readers.h"
 #include "io/values.h"
 
@@ -155,6 +156,17 @@ Particles points_of(const Source& source, const Header& header) {
 }
 
 }  // namespace
+
+void look_at_bgeo(const Source& start, FrameHead& head) {
+  const std::optional<Header> header = header_of(start);
+  if (!header) short_header(start);
+  if (header->points > (head.plain_bytes - std::min(head.plain_bytes, header->first_point)) / header->stride)
+    start.malformed("the file is shorter than its points", header->first_point);
+  head.format = "bgeo";
+  head.particles = header->points;
+  head.counted = true;
+  head.values = static_cast<double>(header->stride) / kWord - 1;  // but w
+}
 
 Particles read_bgeo(const Source& source) {
   const std::optional<Header> header = header_of(source);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "io/frame_head.h"
 #include "io/hdf5_handles.h"
 #include "io/readers.h"
 #include "io/text.h"
@@ -96,12 +97,8 @@ std::optional<float> spacing_of(const Particles& particles) {
   return spacing;
 }
 
-}  // namespace
-
-Particles read_hdf5(const std::string& path) {
-  const std::lock_guard lock(hdf5_mutex());
-  const QuietHdf5 quiet;
-  const Hdf5Group file = Hdf5Group::open_file(path);
+/// The groups of a file that may be the water, at least one.
+std::vector<Candidate> candidates_in(const Hdf5Group& file, const std::string& path) {
   const std::optional<Hdf5Group> groups = file.group("particles");
   std::vector<Candidate> candidates;
   if (groups) candidates = candidates_of(*groups);
@@ -114,7 +111,29 @@ Particles read_hdf5(const std::string& path) {
                                          {},
                                          "export the particles as VTK, PLY or text"});
   }
+  return candidates;
+}
 
+}  // namespace
+
+void look_at_hdf5(const std::string& path, FrameHead& head) {
+  const std::lock_guard lock(hdf5_mutex());
+  const QuietHdf5 quiet;
+  const std::vector<Candidate> candidates = candidates_in(Hdf5Group::open_file(path), path);
+  const Candidate& water = candidates.front();
+  std::uint64_t values = 0;
+  for (const std::string& name : water.arrays.names()) values += water.arrays.length_of(name).value_or(0);
+  head.format = "hdf5";
+  head.particles = water.count;
+  head.counted = true;
+  if (water.count > 0) head.values = static_cast<double>(values) / static_cast<double>(water.count);
+}
+
+Particles read_hdf5(const std::string& path) {
+  const std::lock_guard lock(hdf5_mutex());
+  const QuietHdf5 quiet;
+  const Hdf5Group file = Hdf5Group::open_file(path);
+  const std::vector<Candidate> candidates = candidates_in(file, path);
   const Candidate& chosen = candidates.front();
   Particles particles;
   particles.format = "hdf5";

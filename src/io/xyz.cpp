@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "io/attributes.h"
+#include "io/frame_head.h"
 #include "io/readers.h"
 #include "io/text.h"
 
@@ -102,6 +103,28 @@ class XyzReader {
       move_columns();
     }
     return std::move(particles_);
+  }
+
+  /// Judges the number of rows from the length of those that are there.
+  void look(FrameHead& head) {
+    head.format = "xyz";
+    head.text = true;
+    if (source_.starts_with("\xef\xbb\xbf")) text_.seek(3);
+    if (!find_first_row()) {
+      head.counted = true;  // there are none
+      return;
+    }
+    const std::size_t first = text_.at();
+    name_columns();
+    head.values = static_cast<double>(values_.size());
+    const std::string_view rows(source_.bytes.data() + first, source_.bytes.size() - first);
+    const std::size_t last = rows.find_last_of('\n');
+    const std::size_t whole = last == std::string_view::npos ? rows.size() : last + 1;
+    const auto count = static_cast<double>(
+        std::max<std::ptrdiff_t>(std::count(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(whole), '\n'), 1));
+    const double left = static_cast<double>(head.plain_bytes) - static_cast<double>(first);
+    head.particles = static_cast<std::uint64_t>(std::max(left * count / static_cast<double>(whole) + 0.5, 1.0));
+    head.counted = whole == static_cast<std::size_t>(left);
   }
 
  private:
@@ -241,5 +264,7 @@ class XyzReader {
 }  // namespace
 
 Particles read_xyz(const Source& source) { return XyzReader(source).read(); }
+
+void look_at_xyz(const Source& start, FrameHead& head) { XyzReader(start).look(head); }
 
 }  // namespace meniscus::io

@@ -1,0 +1,52 @@
+// The memory of a ray-cast surface from the number and the box of its particles.
+#include <algorithm>
+#include <cmath>
+
+#include "meniscus/surface.h"
+
+namespace meniscus {
+namespace {
+
+constexpr double kBand = 8;         ///< spacings: depth of the water under the surface whose particles are kept
+constexpr double kRoughness = 1.3;  ///< area of water with waves and splashes over that of a box
+constexpr double kCell = 2;         ///< spacings along a cell
+constexpr double kBytesKept = 36;   ///< a kept particle: position, index, mass, radius, and what is splatted
+constexpr double kBytesBuilt = 60;  ///< while it is sorted
+constexpr double kBytesACell = 13;
+constexpr double kBytesAPixel = 64;  ///< depth, normal twice, thickness, coverage, entry, exit, and a border
+
+/// m^2: of water that lies in a box as in a tank: level, across the shortest side. Walls and floor are surface too.
+double area_of(double volume, const Bounds& bounds, double spacing) {
+  const vec3 extent = bounds.extent();
+  double side[3] = {extent.x + spacing, extent.y + spacing, extent.z + spacing};
+  std::sort(side, side + 3);
+  const double depth = std::min(volume / (side[1] * side[2]), side[0]);
+  return 2 * side[1] * side[2] + 2 * (side[1] + side[2]) * depth;
+}
+
+}  // namespace
+
+RaycastEstimate estimate_raycast(std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
+                                 std::uint64_t pixels) {
+  RaycastEstimate estimate;
+  const double spacing = options.spacing, n = static_cast<double>(count);
+  if (!(spacing > 0 && spacing < 1e30))
+    throw Error(ErrorCode::invalid_argument, "an estimate of a surface needs the particles' spacing, above 0 m");
+  const double volume = n * spacing * spacing * spacing;
+  const double area = bounds.empty() ? 0 : kRoughness * area_of(volume, bounds, spacing);
+  const double kept = std::min(n, kBand * area / (spacing * spacing));
+  // A block has 8 cells along an edge, and those at the surface are full of air by half.
+  const double block = 8 * kCell * spacing;
+  const double blocks = std::min(n, volume / std::pow(block, 3) + area / (block * block) + (count > 0 ? 1 : 0));
+  const double cells = 512 * blocks;
+  const auto bytes = [](double b) { return static_cast<std::uint64_t>(std::max(b, 0.0)); };
+  estimate.kept_bytes = bytes(kBytesKept * kept + kBytesACell * cells);
+  estimate.build_bytes = bytes(kBytesBuilt * kept + kBytesACell * cells + 4 * cells);
+  estimate.view_bytes = bytes(kBytesAPixel * static_cast<double>(pixels));
+  estimate.particles = n;
+  estimate.kept = kept;
+  estimate.pixels = static_cast<double>(pixels);
+  return estimate;
+}
+
+}  // namespace meniscus

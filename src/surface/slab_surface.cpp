@@ -1,0 +1,246 @@
+#include "surface/slab_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surface/normal_filter.h"
+
+namespace meniscus {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kMarginSpacings = 4;   ///< beyond the reach of sums: for the entry of rays near the border
+constexpr float kSeamSpacings = 0.5f;  ///< hits this far beyond a border count for both slabs, so that none is lost
+constexpr std::size_t kSample = std::size_t{1} << 18;
+
+const std::vector<float>& values_of(const Particles& particles, int axis) {
+  return axis == 0 ? particles.x : axis == 1 ? particles.y : particles.z;
+}
+
+float smoothing_length_of(const RaycastOptions& options) {
+  return options.smoothing_length > 0 ? options.smoothing_length : 2 * options.spacing;
+}
+
+/// m: the masses of particles that a sum at a place reaches depend on others around them.
+float margin_of(const RaycastOptions& options) {
+  const float h = smoothing_length_of(options);
+  const float normals = options.normal_radius > 0 ? options.normal_radius : 3 * options.spacing;
+  return std::max(h, normals) + h + kMarginSpacings * options.spacing;
+}
+
+/// Axes along which slabs may lie: the long ones, so that margins do not make them thick.
+bool may_be_cut(const vec3& extent, int axis) {
+  return extent[axis] >= 0.5f * std::max({extent.x, extent.y, extent.z});
+}
+
+/// One slab: the half-open range of its own, m along the axis.
+struct Slab {
+  int axis = 0;
+  float low = -kInfinity, high = kInfinity;
+};
+
+class SlabSurface final : public Surface {
+ public:
+  SlabSurface(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours, int slabs)
+      : particles_(particles), options_(options), colours_(colours), slabs_(slabs), bounds_(particles.bounds()) {
+    // The options are checked as they always are.
+    static_cast<void>(make_raycast_surface(Particles{}, options));
+    if (!colours.empty() && colours.size() != particles.size())
+      throw Error(ErrorCode::invalid_argument, "there must be as many colours as particles");
+    if (slabs < 1) throw Error(ErrorCode::invalid_argument, "a surface is drawn in one slab at least");
+  }
+
+  SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
+    SurfaceBuffers whole = empty_buffers(view.width, view.height);
+    for (const Slab& slab : slabs_for(view)) {
+      const std::unique_ptr<Surface> part = part_of(slab, margin_of(options_), times);
+      const SurfaceBuffers seen = part->see(view, {}, times);
+      refuse_inside(seen, slab, view);
+      compose(view, {}, slab, seen, whole);
+      for (std::size_t i = 0; i < whole.entry.size(); ++i) {
+        whole.entry[i] = std::min(whole.entry[i], seen.entry[i]);
+        whole.exit[i] = std::max(whole.exit[i], seen.exit[i]);
+      }
+    }
+    if (options_.want_normals && options_.filter_radius > 0) {
+      StageTimer timer(times, "filter");
+      whole.normal = filtered_normals(view, whole.depth, whole.normal, options_.filter_radius, filter_tolerance());
+    }
+    if (options_.want_thickness) whole.thickness = thickness(view, {}, times);
+    return points.empty() ? std::move(whole) : refine(view, whole, points, times);
+  }
+
+  SurfaceBuffers refine(const View& view, const SurfaceBuffers& coarse, std::span<const vec2> points,
+                        StageTimes* times) const override {
+    SurfaceBuffers fine = empty_buffers(static_cast<int>(points.size()), 1);
+    for (const Slab& slab : slabs_for(view)) {
+      if (points.empty()) break;
+      const std::unique_ptr<Surface> part = part_of(slab, margin_of(options_), times);
+      SurfaceBuffers seen = part->refine(view, coarse, points, times);
+      compose(view, points, slab, seen, fine);
+      fine.entry = std::move(seen.entry);  // of `coarse` in all slabs, as is the thickness
+      fine.exit = std::move(seen.exit);
+      fine.thickness = std::move(seen.thickness);
+    }
+    if (options_.want_normals && options_.filter_radius > 0 && !coarse.normal.empty() && !points.empty())
+      take_filtered_normals(view, coarse, points, filter_tolerance(), fine);
+    return fine;
+  }
+
+  Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
+    Image<float> sum =
+        points.empty() ? Image<float>(view.width, view.height) : Image<float>(static_cast<int>(points.size()), 1);
+    for (const Slab& slab : slabs_for(view)) {
+      const Image<float> part = part_of(slab, 0, times, true)->thickness(view, points, times);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+    }
+    return sum;
+  }
+
+  float spacing() const override { return options_.spacing; }
+
+  Bounds bounds() const override { return bounds_.grown(smoothing_length_of(options_)); }
+
+ private:
+  float filter_tolerance() const { return 0.5f * options_.spacing; }
+
+  SurfaceBuffers empty_buffers(int width, int height) const {
+    SurfaceBuffers buffers;
+    buffers.depth = buffers.entry = Image<float>(width, height, kInfinity);
+    buffers.exit = Image<float>(width, height, -kInfinity);
+    buffers.coverage = Image<float>(width, height);
+    buffers.normal = Image<vec3>(width, height, vec3{0.0f});
+    if (!colours_.empty()) buffers.colour = Image<vec3>(width, height, vec3{0.0f});
+    return buffers;
+  }
+
+  /// Slabs of about equally many particles, across the axis that rays run along least: most rays stay in one slab.
+  std::vector<Slab> slabs_for(const View& view) const {
+    const vec3 extent = bounds_.extent();
+    int axis = 0;
+    float best = -1;
+    for (int i = 0; i < 3; ++i) {
+      const float across = extent[i] * (1.0f - 0.9f * std::abs(view.forward[i]));
+      if (may_be_cut(extent, i) && across > best) {
+        best = across;
+        axis = i;
+      }
+    }
+    const std::vector<float>& values = values_of(particles_, axis);
+    std::vector<float> sample;
+    const std::size_t step = values.size() / kSample + 1;
+    for (std::size_t i = 0; i < values.size(); i += step) sample.push_back(values[i]);
+    std::sort(sample.begin(), sample.end());
+    std::vector<Slab> slabs{{axis, -kInfinity, kInfinity}};
+    for (int k = 1; k < slabs_; ++k) {
+      if (sample.empty()) break;
+      const float border = sample[sample.size() * static_cast<std::size_t>(k) / static_cast<std::size_t>(slabs_)];
+      if (!(border > slabs.back().low + options_.spacing)) continue;  // nothing would be between them
+      slabs.back().high = border;
+      slabs.push_back({axis, border, kInfinity});
+    }
+    return slabs;
+  }
+
+  /// The surface of the particles of a slab and of those up to `margin` m beside it.
+  std::unique_ptr<Surface> part_of(const Slab& slab, float margin, StageTimes* times,
+                                   bool only_thickness = false) const {
+    const std::vector<float>& values = values_of(particles_, slab.axis);
+    const auto is_in = [&](float value) { return value >= slab.low - margin && value < slab.high + margin; };
+    const auto count = static_cast<std::size_t>(std::count_if(values.begin(), values.end(), is_in));
+    Particles part;
+    std::vector<vec3> colours;
+    for (std::vector<float>* list : {&part.x, &part.y, &part.z}) list->reserve(count);
+    if (!colours_.empty() && !only_thickness) colours.reserve(count);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!is_in(values[i])) continue;
+      part.x.push_back(particles_.x[i]);
+      part.y.push_back(particles_.y[i]);
+      part.z.push_back(particles_.z[i]);
+      if (!colours_.empty() && !only_thickness) colours.push_back(colours_[i]);
+    }
+    RaycastOptions options = options_;
+    options.filter_radius = 0;  // the filter reaches over borders
+    options.want_thickness = only_thickness;
+    if (only_thickness) options.want_normals = options.keep_thin = options.cull_interior = false;
+    return make_raycast_surface(part, options, colours, times);
+  }
+
+  /// Takes the hits in the slab's own part that are nearer than those that are there.
+  void compose(const View& view, std::span<const vec2> points, const Slab& slab, const SurfaceBuffers& seen,
+               SurfaceBuffers& whole) const {
+    const float seam = kSeamSpacings * options_.spacing;
+    const auto width = static_cast<std::size_t>(view.width);
+    parallel_for(seen.depth.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!(seen.depth[i] < whole.depth[i])) continue;
+        const Ray ray =
+            view.ray(points.empty() ? vec2{static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f}
+                                    : points[i]);
+        const float at = ray.origin[slab.axis] + seen.depth[i] * ray.direction[slab.axis];
+        if (!(at >= slab.low - seam && at < slab.high + seam)) continue;
+        whole.depth[i] = seen.depth[i];
+        whole.coverage[i] = seen.coverage[i];
+        if (!seen.normal.empty()) whole.normal[i] = seen.normal[i];
+        if (!seen.colour.empty()) whole.colour[i] = seen.colour[i];
+      }
+    });
+  }
+
+  void refuse_inside(const SurfaceBuffers& seen, const Slab& slab, const View& view) const {
+    if (!seen.eye_in_water || view.eye[slab.axis] < slab.low || view.eye[slab.axis] >= slab.high) return;
+    throw Error(ErrorCode::limit_exceeded, {"water that the eye is in cannot be drawn in parts",
+                                            "an eye out of the water, or memory for all of the surface",
+                                            {},
+                                            {},
+                                            {},
+                                            {},
+                                            "raise --memory-limit, or move the eye"});
+  }
+
+  const Particles& particles_;
+  RaycastOptions options_;
+  std::span<const vec3> colours_;
+  int slabs_;
+  Bounds bounds_;
+};
+
+}  // namespace
+
+std::unique_ptr<Surface> make_slab_surface(const Particles& particles, const RaycastOptions& options,
+                                           std::span<const vec3> colours, int slabs) {
+  return std::make_unique<SlabSurface>(particles, options, colours, slabs);
+}
+
+std::uint64_t slab_bytes(int slabs, std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
+                         std::uint64_t pixels, bool coloured) {
+  const std::uint64_t colour = coloured ? 3 * sizeof(float) : 0;
+  const RaycastEstimate whole = estimate_raycast(count, bounds, options, pixels);
+  const auto held = [&](const RaycastEstimate& e, std::uint64_t particles) {
+    return std::max(e.build_bytes, e.kept_bytes + e.view_bytes) + particles * colour;
+  };
+  if (slabs <= 1) return held(whole, count);
+  std::uint64_t most = 0;
+  const vec3 extent = bounds.extent();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!may_be_cut(extent, axis)) continue;
+    const double margin = std::min(
+        1.0, 2.0 * static_cast<double>(margin_of(options)) / std::max(1e-30, static_cast<double>(extent[axis])));
+    const double part = std::min(1.0, 1.0 / slabs + margin);
+    Bounds slab = bounds;
+    slab.high[axis] = slab.low[axis] + static_cast<float>(part) * extent[axis];
+    const auto in_slab = static_cast<std::uint64_t>(part * static_cast<double>(count)) + 1;
+    const std::uint64_t copied = in_slab * (3 * sizeof(float) + colour);
+    most = std::max(most, held(estimate_raycast(in_slab, slab, options, pixels), in_slab) + copied + whole.view_bytes);
+  }
+  return most;
+}
+
+int slabs_within(std::uint64_t bytes, std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
+                 std::uint64_t pixels, bool coloured) {
+  for (int slabs = 1; slabs <= kMostSlabs; slabs += std::max(1, slabs / 4))
+    if (slab_bytes(slabs, count, bounds, options, pixels, coloured) <= bytes) return slabs;
+  return 0;
+}
+
+}  // namespace meniscus
