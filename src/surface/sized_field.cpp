@@ -41,8 +41,8 @@ RaycastField level_of(const Particles& particles, const ResolvedSizes& own, std:
   // The longest reach may be that of a particle with a smaller spacing: then it is more of the largest spacing's.
   RaycastField field = make_field(chosen, options_of_size(own.options, spacing, length), chosen_colours);
   const std::size_t kept = field.grid.size();
-  field.per_spacing.assign(kept + ParticleGrid::kPadding, 1.0f);
-  field.per_smoothing.assign(kept + ParticleGrid::kPadding, 1.0f);
+  field.per_spacing.assign(field.mass.size(), 1.0f);
+  field.per_smoothing.assign(field.mass.size(), 1.0f);
   for (std::size_t i = 0; i < kept; ++i) {
     const std::uint32_t given = members[field.grid.given_index(i)];
     field.per_spacing[i] = spacing / own.spacing[given];
