@@ -1,6 +1,9 @@
 #include "surface/normal_filter.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "surface/packet.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -8,26 +11,29 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
-#include <hwy/contrib/math/math-inl.h>
+#include "surface/vector3-inl.h"
 
-#ifndef MENISCUS_SURFACE_NORMAL_FILTER_PLANES
-#define MENISCUS_SURFACE_NORMAL_FILTER_PLANES
+#ifndef MENISCUS_SURFACE_NORMAL_FILTER_TILE
+#define MENISCUS_SURFACE_NORMAL_FILTER_TILE
 namespace meniscus {
 namespace {
 
-/// One component after another, with a border as wide as the window so that no tap leaves the arrays.
-struct Planes {
-  std::vector<float> px, py, pz, nx, ny, nz;
-  std::size_t pitch = 0;
-};
+constexpr int kVector = 16;
+/// Pixels that are filtered together: a row of them with the window's border on both sides has kPitch values, so that
+/// all rows and components of a tile stay in the second-level cache.
+constexpr int kPitch = 336, kTileHeight = 32;
+constexpr int tile_width(int radius) { return kPitch - kVector - 2 * radius; }
+constexpr float kLog2E = 1.442695041f;
 
-struct FilterRow {
-  const Planes* planes;
-  std::size_t start;  ///< index of the row's first pixel in the planes
-  int width;
+/// One call of the filter.
+struct FilterJob {
+  const View& view;
+  const Image<float>& depth;
+  const Image<vec3>& normals;
   int radius;
   float tolerance;
-  const float* spatial;  ///< (2 radius + 1)^2 values of -r^2 / (2 sigma^2)
+  const float* spatial;  ///< (2 radius + 1)^2 values of -r^2 / (2 sigma^2) - 1 / sharpness, for powers of two
+  Image<vec3>& filtered;
 };
 
 }  // namespace
@@ -39,69 +45,163 @@ namespace meniscus {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Tag = HWY_CAPPED(float, 16);
-using Vec = hn::Vec<Tag>;
-
-/// exp(v) for v <= 0 to 2e-5 relative: (1 + v / 1024 + v^2 / (2 1024^2))^1024, and 0 below -60.
-HWY_INLINE Vec exponential(Vec v) {
+/// 2^v to 7.5e-5 relative for -100 <= v <= 127; 2^-100 below: products of smaller ones would be subnormal, and slow.
+HWY_INLINE Vec power_of_two(Vec v) {
   const Tag d;
-  const Vec one = hn::Set(d, 1.0f);
-  const Vec small = hn::Mul(hn::Max(v, hn::Set(d, -60.0f)), hn::Set(d, 1.0f / 1024.0f));
-  Vec e = hn::MulAdd(small, hn::MulAdd(small, hn::Set(d, 0.5f), one), one);
-  for (int i = 0; i < 10; ++i) e = hn::Mul(e, e);
-  return hn::IfThenElseZero(hn::Gt(v, hn::Set(d, -60.0f)), e);
+  const hn::RebindToSigned<Tag> di;
+  // Adding 1.5 * 2^23 leaves the nearest integer in the last bits, from where it goes into the exponent.
+  const Vec shift = hn::Set(d, 12582912.0f);
+  v = hn::Max(v, hn::Set(d, -100.0f));
+  const Vec shifted = hn::Add(v, shift);
+  const Vec f = hn::Sub(v, hn::Sub(shifted, shift));
+  // Of least relative error for |f| <= 1/2 among the cubic polynomials.
+  Vec power = hn::MulAdd(f, hn::Set(d, 0.05517167f), hn::Set(d, 0.24261112f));
+  power = hn::MulAdd(f, power, hn::Set(d, 0.69326099f));
+  power = hn::MulAdd(f, power, hn::Set(d, 0.99992807f));
+  return hn::BitCast(d, hn::Add(hn::BitCast(di, power), hn::ShiftLeft<23>(hn::BitCast(di, shifted))));
 }
+
+/// Points and normals of a tile and the window's border around it: row by row, in a row one component after another.
+/// Without surface all are zero, which adds nothing to any sum.
+class FilterTile {
+ public:
+  /// @param x0, y0  the tile's first pixel
+  FilterTile(const FilterJob& job, int x0, int y0)
+      : job_(job),
+        x0_(x0),
+        y0_(y0),
+        width_(std::min(tile_width(job.radius), job.depth.width() - x0)),
+        height_(std::min(kTileHeight, job.depth.height() - y0)) {}
+
+  void run() {
+    thread_local AlignedFloats memory;
+    const std::size_t size = kRow * static_cast<std::size_t>(height_ + 2 * job_.radius);
+    memory.reserve(size, 0);
+    values_ = memory.data();
+    std::fill_n(values_, size, 0.0f);
+    const int first = std::max(y0_ - job_.radius, 0);
+    const int last = std::min(y0_ + height_ + job_.radius, job_.depth.height());
+    for (int y = first; y < last; ++y) fill_row(y);
+    for (int y = 0; y < height_; ++y) filter_row(y);
+  }
+
+ private:
+  static constexpr int kComponents = 6;
+  static constexpr std::size_t kRow = static_cast<std::size_t>(kComponents) * kPitch;
+
+  /// The first component of a pixel; the others follow at distances of kPitch.
+  float* at(int x, int y) const {
+    return values_ + static_cast<std::size_t>(y - y0_ + job_.radius) * kRow +
+           static_cast<std::size_t>(x - x0_ + job_.radius);
+  }
+
+  /// Positions are in units of sqrt(2) tolerance, scaled for powers of two.
+  float scale() const { return std::sqrt(0.5f * kLog2E) / job_.tolerance; }
+
+  void fill_row(int y) {
+    const Tag d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const int first = std::max(x0_ - job_.radius, 0);
+    const int last = std::min(x0_ + width_ + job_.radius, job_.depth.width());
+    const float* depth = job_.depth.row(y);
+    const float* normals = &job_.normals.row(y)->x;
+    if (job_.view.projection == Projection::cube) return fill_row_of_cube(y, first, last);
+    const PictureRays rays(job_.view);
+    const Vec row = hn::Set(d, static_cast<float>(y) + 0.5f), by = hn::Set(d, scale());
+    const Vec infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    for (int x = first; x < last; x += lanes) {
+      alignas(64) float rest[kVector], rest_normals[3 * kVector];
+      const float *t = depth + x, *n = normals + 3 * x;
+      if (x + lanes > last) {  // copies, so that no vector reaches past the row
+        std::fill_n(rest, kVector, std::numeric_limits<float>::infinity());
+        std::fill_n(rest_normals, 3 * kVector, 0.0f);
+        std::copy(t, depth + last, rest);
+        std::copy(n, normals + 3 * last, rest_normals);
+        t = rest;
+        n = rest_normals;
+      }
+      const Vec along = hn::LoadU(d, t);
+      const auto hit = hn::Lt(along, infinity);
+      if (hn::AllFalse(d, hit)) continue;
+      Vec3V normal, direction;
+      hn::LoadInterleaved3(d, n, normal.x, normal.y, normal.z);
+      const Vec column = hn::Iota(d, static_cast<float>(x) + 0.5f);
+      const Vec3V point =
+          scaled(rays.point(column, row, hn::IfThenElseZero(hit, along), direction), hn::IfThenElseZero(hit, by));
+      const Vec values[] = {point.x, point.y, point.z, normal.x, normal.y, normal.z};
+      for (int i = 0; i < kComponents; ++i) hn::StoreU(hn::IfThenElseZero(hit, values[i]), d, at(x, y) + i * kPitch);
+    }
+  }
+
+  void fill_row_of_cube(int y, int first, int last) {
+    for (int x = first; x < last; ++x) {
+      const float depth = job_.depth(x, y);
+      if (!(depth < std::numeric_limits<float>::infinity())) continue;
+      const Ray ray = job_.view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
+      const vec3 point = scale() * (ray.origin - job_.view.eye + depth * ray.direction), normal = job_.normals(x, y);
+      const float values[] = {point.x, point.y, point.z, normal.x, normal.y, normal.z};
+      for (int i = 0; i < kComponents; ++i) at(x, y)[i * kPitch] = values[i];
+    }
+  }
+
+  static HWY_INLINE Vec3V point_at(const float* pixel) {
+    const Tag d;
+    return {hn::LoadU(d, pixel), hn::LoadU(d, pixel + kPitch), hn::LoadU(d, pixel + 2 * kPitch)};
+  }
+  static HWY_INLINE Vec3V normal_at(const float* pixel) { return point_at(pixel + 3 * kPitch); }
+
+  void filter_row(int row) {
+    const Tag d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const Vec zero = hn::Zero(d);
+    float* out = &job_.filtered.row(y0_ + row)[x0_].x;
+    for (int x = 0; x < width_; x += lanes) {
+      const float* centre = at(x0_ + x, y0_ + row);
+      const Vec3V n = normal_at(centre);
+      const auto hit = hn::Gt(dot(n, n), zero);
+      if (hn::AllFalse(d, hit)) continue;
+      const Vec3V sum = window_sum(n, centre);
+      const Vec size2 = hn::Max(dot(sum, sum), hn::Set(d, 1e-20f));
+      const Vec3V result = scaled(sum, hn::IfThenElseZero(hit, hn::Div(hn::Set(d, 1.0f), hn::Sqrt(size2))));
+      if (x + lanes <= width_) {
+        hn::StoreInterleaved3(result.x, result.y, result.z, d, out + 3 * x);
+      } else {
+        alignas(64) float rest[3 * kVector];
+        hn::StoreInterleaved3(result.x, result.y, result.z, d, rest);
+        std::copy_n(rest, 3 * (width_ - x), out + 3 * x);
+      }
+    }
+  }
+
+  HWY_INLINE Vec3V window_sum(const Vec3V n, const float* centre) const {
+    const Tag d;
+    const Vec off_origin = dot(n, point_at(centre));
+    const Vec3V for_agreement = scaled(n, hn::Set(d, kLog2E / kNormalSharpness));
+    const float* spatial = job_.spatial;
+    const int radius = job_.radius;
+    Vec3V sum = n;
+    for (int dy = -radius; dy <= radius; ++dy) {
+      const float* tap = centre + dy * static_cast<std::ptrdiff_t>(kRow) - radius;
+      for (int dx = -radius; dx <= radius; ++dx, ++tap, ++spatial) {
+        if (dx == 0 && dy == 0) continue;
+        const Vec3V p = point_at(tap), q = normal_at(tap);
+        const Vec off = hn::MulAdd(n.x, p.x, hn::MulAdd(n.y, p.y, hn::MulSub(n.z, p.z, off_origin)));
+        Vec exponent = hn::MulAdd(for_agreement.z, q.z, hn::Set(d, *spatial));
+        exponent = hn::MulAdd(for_agreement.x, q.x, hn::MulAdd(for_agreement.y, q.y, exponent));
+        sum = combined(sum, power_of_two(hn::NegMulAdd(off, off, exponent)), q);
+      }
+    }
+    return sum;
+  }
+
+  const FilterJob& job_;
+  int x0_, y0_, width_, height_;
+  float* values_ = nullptr;
+};
 
 }  // namespace
 
-/// Filters one row; out_x .. hold width values rounded up to a multiple of 16.
-void FilterNormalRow(const FilterRow& row, float* out_x, float* out_y, float* out_z) {
-  const Tag d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const Planes& planes = *row.planes;
-  const Vec by_tolerance = hn::Set(d, -0.5f / (row.tolerance * row.tolerance));
-  const Vec by_sharpness = hn::Set(d, 1.0f / kNormalSharpness);
-  const Vec one = hn::Set(d, 1.0f);
-  for (int x = 0; x < row.width; x += lanes) {
-    const std::size_t centre = row.start + static_cast<std::size_t>(x);
-    const Vec nx = hn::LoadU(d, &planes.nx[centre]), ny = hn::LoadU(d, &planes.ny[centre]),
-              nz = hn::LoadU(d, &planes.nz[centre]);
-    Vec sum_x = nx, sum_y = ny, sum_z = nz;
-    if (hn::AllTrue(d, hn::Eq(hn::MulAdd(nx, nx, hn::MulAdd(ny, ny, hn::Mul(nz, nz))), hn::Zero(d)))) {
-      hn::StoreU(sum_x, d, out_x + x);
-      hn::StoreU(sum_y, d, out_y + x);
-      hn::StoreU(sum_z, d, out_z + x);
-      continue;
-    }
-    const Vec px = hn::LoadU(d, &planes.px[centre]), py = hn::LoadU(d, &planes.py[centre]),
-              pz = hn::LoadU(d, &planes.pz[centre]);
-    const float* spatial = row.spatial;
-    for (int dy = -row.radius; dy <= row.radius; ++dy) {
-      std::size_t tap = centre + static_cast<std::size_t>(dy) * planes.pitch - static_cast<std::size_t>(row.radius);
-      for (int dx = -row.radius; dx <= row.radius; ++dx, ++tap, ++spatial) {
-        if (dx == 0 && dy == 0) continue;
-        const Vec qx = hn::LoadU(d, &planes.nx[tap]), qy = hn::LoadU(d, &planes.ny[tap]),
-                  qz = hn::LoadU(d, &planes.nz[tap]);
-        const Vec off_plane = hn::MulAdd(nx, hn::Sub(hn::LoadU(d, &planes.px[tap]), px),
-                                         hn::MulAdd(ny, hn::Sub(hn::LoadU(d, &planes.py[tap]), py),
-                                                    hn::Mul(nz, hn::Sub(hn::LoadU(d, &planes.pz[tap]), pz))));
-        const Vec agreement = hn::MulAdd(nx, qx, hn::MulAdd(ny, qy, hn::Mul(nz, qz)));
-        Vec exponent = hn::MulAdd(hn::Mul(off_plane, off_plane), by_tolerance, hn::Set(d, *spatial));
-        exponent = hn::MulAdd(hn::Sub(agreement, one), by_sharpness, exponent);
-        const Vec weight = exponential(exponent);
-        sum_x = hn::MulAdd(weight, qx, sum_x);
-        sum_y = hn::MulAdd(weight, qy, sum_y);
-        sum_z = hn::MulAdd(weight, qz, sum_z);
-      }
-    }
-    const Vec size2 = hn::MulAdd(sum_x, sum_x, hn::MulAdd(sum_y, sum_y, hn::Mul(sum_z, sum_z)));
-    const Vec norm = hn::Div(one, hn::Sqrt(hn::Max(size2, hn::Set(d, 1e-20f))));
-    hn::StoreU(hn::Mul(sum_x, norm), d, out_x + x);
-    hn::StoreU(hn::Mul(sum_y, norm), d, out_y + x);
-    hn::StoreU(hn::Mul(sum_z, norm), d, out_z + x);
-  }
-}
+void FilterNormalTile(const FilterJob& job, int x0, int y0) { FilterTile(job, x0, y0).run(); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace meniscus
@@ -110,56 +210,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meniscus {
 
-HWY_EXPORT(FilterNormalRow);
+HWY_EXPORT(FilterNormalTile);
 
 Image<vec3> filtered_normals(const View& view, const Image<float>& depth, const Image<vec3>& normals, int radius,
                              float tolerance) {
-  constexpr std::size_t kVector = 16;
-  constexpr float kNoSurface = 1e15f;  // so far off every plane that the weight is zero
   const int width = depth.width(), height = depth.height();
-  const auto border = static_cast<std::size_t>(radius);
-  Planes planes;
-  planes.pitch = static_cast<std::size_t>(width) + 2 * border + kVector;
-  const std::size_t size = planes.pitch * (static_cast<std::size_t>(height) + 2 * border) + kVector;
-  const auto row_start = [&](std::size_t y) { return (y + border) * planes.pitch + border; };
-  for (auto* plane : {&planes.px, &planes.py, &planes.pz}) plane->resize(size, kNoSurface);
-  for (auto* plane : {&planes.nx, &planes.ny, &planes.nz}) plane->resize(size, 0.0f);
-  parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      for (int x = 0; x < width; ++x) {
-        const float t = depth(x, static_cast<int>(y));
-        if (!(t < std::numeric_limits<float>::infinity())) continue;
-        const Ray ray = view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
-        const vec3 point = ray.origin - view.eye + t * ray.direction;
-        const vec3 normal = normals(x, static_cast<int>(y));
-        const std::size_t at = row_start(y) + static_cast<std::size_t>(x);
-        planes.px[at] = point.x;
-        planes.py[at] = point.y;
-        planes.pz[at] = point.z;
-        planes.nx[at] = normal.x;
-        planes.ny[at] = normal.y;
-        planes.nz[at] = normal.z;
-      }
-  });
   const float sigma = 0.5f * static_cast<float>(radius);
   std::vector<float> spatial;
   for (int dy = -radius; dy <= radius; ++dy)
     for (int dx = -radius; dx <= radius; ++dx)
-      spatial.push_back(-0.5f * static_cast<float>(dx * dx + dy * dy) / (sigma * sigma));
+      spatial.push_back(kLog2E *
+                        (-0.5f * static_cast<float>(dx * dx + dy * dy) / (sigma * sigma) - 1.0f / kNormalSharpness));
   Image<vec3> filtered(width, height, vec3{0});
-  parallel_for(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
-    const std::size_t padded = (static_cast<std::size_t>(width) + kVector - 1) / kVector * kVector;
-    std::vector<float> x_row(padded), y_row(padded), z_row(padded);
-    for (std::size_t y = begin; y < end; ++y) {
-      HWY_DYNAMIC_DISPATCH(FilterNormalRow)
-      (FilterRow{&planes, row_start(y), width, radius, tolerance, spatial.data()}, x_row.data(), y_row.data(),
-       z_row.data());
-      for (int x = 0; x < width; ++x) {
-        const auto i = static_cast<std::size_t>(x);
-        if (depth(x, static_cast<int>(y)) < std::numeric_limits<float>::infinity())
-          filtered(x, static_cast<int>(y)) = {x_row[i], y_row[i], z_row[i]};
-      }
-    }
+  const FilterJob job{view, depth, normals, radius, tolerance, spatial.data(), filtered};
+  const auto tiles_x = static_cast<std::size_t>((width + tile_width(radius) - 1) / tile_width(radius));
+  const auto tiles_y = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
+  parallel_for(tiles_x * tiles_y, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t tile = begin; tile < end; ++tile) HWY_DYNAMIC_DISPATCH(FilterNormalTile)
+    (job, static_cast<int>(tile % tiles_x) * tile_width(radius), static_cast<int>(tile / tiles_x) * kTileHeight);
   });
   return filtered;
 }

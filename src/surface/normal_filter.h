@@ -10,6 +10,7 @@ namespace meniscus {
 /// where r is the distance in pixels, sigma = radius / 2, and e the distance of the neighbour's surface point
 /// from the tangent plane of the pixel: a plane seen at a slant is smoothed whole, nothing across a depth edge.
 /// @param depth      m along the rays of `view`; infinite where there is no surface
+/// @param radius     px, 1 .. 128
 /// @param tolerance  m
 /// @return           unit normals, zero where there is no surface
 Image<vec3> filtered_normals(const View& view, const Image<float>& depth, const Image<vec3>& normals, int radius,
