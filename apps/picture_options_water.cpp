@@ -14,6 +14,14 @@ void PictureArguments::add_surface(CLI::App& command) {
       "--kernel", "NAME",
       [](PictureOptions& p, const std::string& name) { p.surface.kernel = p.surfels.kernel = kernel_of(name); },
       "Smoothing kernel: cubic_spline, poly6 or wyvill (default: cubic_spline; wyvill for surfels)");
+  group.text(
+      "--radius-attribute", "NAME", [](PictureOptions& p, const std::string& name) { p.sizes.radius = name; },
+      "Attribute with each particle's radius, m, half its spacing; --surface raycast only (default: all are alike)");
+  group.text(
+      "--smoothing-attribute", "NAME",
+      [](PictureOptions& p, const std::string& name) { p.sizes.smoothing_length = name; },
+      "Attribute with the reach of each particle's kernel, m (default: as many of its spacings as "
+      "--smoothing-length has)");
   group.number<float>(
       "--iso", "FRACTION", [](PictureOptions& p, float v) { p.surface.iso = v; },
       "Density of the surface as a fraction of that inside the water, 0 to 1 (default: 0.5)");

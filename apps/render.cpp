@@ -102,6 +102,7 @@ void render(RenderArguments& arguments) {
   Progress progress(arguments.quiet);
   SurveyOptions survey_options = arguments.input.survey_options();
   survey_options.colour = picture.colour;
+  survey_options.sizes = picture.sizes;
   auto on_surveyed = [&](std::size_t done, std::size_t count) { progress.surveyed(done, count); };
   FunctionRef<void(std::size_t, std::size_t)> surveyed(on_surveyed);
   const Survey survey = survey_frames(sequence, survey_options, &surveyed);

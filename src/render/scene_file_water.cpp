@@ -84,6 +84,16 @@ const Section& water_section() {
         [](const JsonValue& v, Draft& d) {
           picture(d).surface.smoothing_length = picture(d).surfels.smoothing_length = v.real();
         }},
+       {"radius_attribute",
+        {{Kind::text}},
+        "(none: all particles are alike)",
+        "Attribute with each particle's radius, m, half its spacing; of a ray-cast surface",
+        [](const JsonValue& v, Draft& d) { picture(d).sizes.radius = v.text(); }},
+       {"smoothing_attribute",
+        {{Kind::text}},
+        "(none: follows from the spacing)",
+        "Attribute with the reach of each particle's kernel, m; of a ray-cast surface",
+        [](const JsonValue& v, Draft& d) { picture(d).sizes.smoothing_length = v.text(); }},
        {"surface",
         {a_name({"raycast", "surfels", "height_field", "spheres"})},
         "\"raycast\"",

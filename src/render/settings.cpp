@@ -144,6 +144,7 @@ FrameSettings settings_of(const Survey& survey, const PictureOptions& options) {
   settings.surface = options.surface;
   settings.surface.spacing = spacing_of(survey, options);
   if (!(settings.surface.smoothing_length > 0)) settings.surface.smoothing_length = 2 * settings.surface.spacing;
+  settings.sizes = options.sizes;
   settings.colour = options.colour;
   if (settings.colour && !settings.colour->range) settings.colour->range = survey.colour_range;
   settings.material = material_of(survey, options);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "meniscus/render.h"
+#include "render/frame_sizes.h"
 
 namespace meniscus {
 namespace {
@@ -22,6 +23,8 @@ class Surveyor {
     if (spacing_from_ == 0) {
       survey_.up = options_.up ? UpEstimate{*options_.up, "given"} : estimate_up(particles);
       for (const Attribute& attribute : particles.attributes) survey_.attributes.push_back(attribute.name);
+      if (options_.sizes.empty())
+        if (const std::optional<std::string> note = note_on_radii(particles)) survey_.notes.push_back(*note);
     }
     if (spacing_from_ == 0 || (spacing_from_ < kEnoughToTell && particles.size() >= 10 * spacing_from_)) {
       survey_.spacing = options_.spacing ? SpacingEstimate{*options_.spacing, 3, "given"} : estimate_spacing(particles);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/frame_sizes.h"
 #include "render/inside_solids.h"
 
 namespace meniscus {
@@ -53,13 +54,17 @@ SurfelOptions surfel_options(const FrameSettings& settings, const RaycastOptions
 WaterSurface water_surface(const Particles& particles, const FrameSettings& settings, const RaycastOptions& raycast,
                            const Scene& scene, std::span<const vec3> colours, StageTimes* times) {
   WaterSurface water;
+  if (!settings.sizes.empty() && settings.method != SurfaceMethod::raycast)
+    throw Error(ErrorCode::unsupported,
+                {"only a ray-cast surface takes sizes of single particles", "--surface raycast", {}, {}, {}, {}, {}});
+  const FrameSizes sizes = frame_sizes(particles, settings.sizes);
   const bool eyes = settings.optics.refraction == RefractionMethod::virtual_eye && settings.material.transparent;
   switch (settings.method) {
     case SurfaceMethod::spheres:
       water.surface = make_sphere_surface(particles, 0.5f * raycast.spacing, colours);
       break;
     case SurfaceMethod::raycast:
-      water.surface = make_raycast_surface(particles, raycast, colours, times);
+      water.surface = make_raycast_surface(particles, raycast, colours, times, sizes.sizes());
       break;
     case SurfaceMethod::surfels:
       water.surface = make_surfel_surface(particles, surfel_options(settings, raycast), colours, times);
