@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "json.h"
 #include "meniscus/render.h"
+#include "merged_particles.h"
 #include "parse.h"
 
 namespace meniscus::apps {
@@ -23,6 +24,7 @@ struct RaycastArguments {
   int threads = 0;
   std::string instruction_set = "best";
   bool iso_sweep = false;
+  int size_range = 0;
   bool json = false;
 };
 
@@ -32,10 +34,11 @@ struct Measured {
 };
 
 /// One frame: the surface built and seen.
-Measured fast_frame(const Particles& particles, const RaycastOptions& options, const View& view, SurfaceBuffers* seen) {
+Measured fast_frame(const Particles& particles, const RaycastOptions& options, const View& view, SurfaceBuffers* seen,
+                    const ParticleSizes& sizes = {}) {
   Measured measured;
   const auto start = Clock::now();
-  const auto surface = make_raycast_surface(particles, options, {}, &measured.stages);
+  const auto surface = make_raycast_surface(particles, options, {}, &measured.stages, sizes);
   SurfaceBuffers buffers = surface->see(view, {}, &measured.stages);
   measured.frame_ms = ms_since(start);
   if (seen) *seen = std::move(buffers);
@@ -43,10 +46,11 @@ Measured fast_frame(const Particles& particles, const RaycastOptions& options, c
 }
 
 /// The median frame after one that warms up.
-Measured median_frame(const Particles& particles, const RaycastOptions& options, const View& view, int frames) {
-  fast_frame(particles, options, view, nullptr);
+Measured median_frame(const Particles& particles, const RaycastOptions& options, const View& view, int frames,
+                      const ParticleSizes& sizes = {}) {
+  fast_frame(particles, options, view, nullptr, sizes);
   std::vector<Measured> all;
-  for (int i = 0; i < frames; ++i) all.push_back(fast_frame(particles, options, view, nullptr));
+  for (int i = 0; i < frames; ++i) all.push_back(fast_frame(particles, options, view, nullptr, sizes));
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end(),
                    [](const auto& a, const auto& b) { return a.frame_ms < b.frame_ms; });
@@ -150,6 +154,34 @@ Json iso_sweep(const Particles& particles, const RaycastOptions& options, const 
   return sweep;
 }
 
+std::ptrdiff_t covered_pixels(const SurfaceBuffers& seen) {
+  return std::count_if(seen.depth.begin(), seen.depth.end(), [](float d) { return std::isfinite(d); });
+}
+
+/// The same water with every other slab of it in particles of up to `range` times the size, by the side of the uniform
+/// ones: frame by frame in turn, so that both meet the same machine.
+Json of_different_sizes(const Particles& particles, const RaycastOptions& options, const View& view, int frames,
+                        int range) {
+  const MergedParticles merged = merged_particles(particles, options.spacing, range);
+  const ParticleSizes sizes{merged.spacing, {}};
+  SurfaceBuffers seen;
+  fast_frame(merged.particles, options, view, &seen, sizes);
+  std::vector<double> alike_ms, different_ms;
+  for (int i = 0; i < frames; ++i) {
+    alike_ms.push_back(fast_frame(particles, options, view, nullptr).frame_ms);
+    different_ms.push_back(fast_frame(merged.particles, options, view, nullptr, sizes).frame_ms);
+  }
+  const Measured one = median_frame(merged.particles, options, view, frames, sizes);
+  Json json;
+  json["size_range"] = range;
+  json["sizes_particles"] = merged.particles.size();
+  json["sizes_covered_pixels"] = covered_pixels(seen);
+  json["sizes_stages_ms"] = json_of(one.stages);
+  json["sizes_frame_ms"] = median(different_ms);
+  json["sizes_ratio"] = median(different_ms) / median(alike_ms);
+  return json;
+}
+
 Json measure(const RaycastArguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   use_instruction_set(arguments.instruction_set);
@@ -162,7 +194,6 @@ Json measure(const RaycastArguments& arguments) {
   const std::uint64_t peak = peak_rss_bytes();  // the plain method's memory is not of interest
   SurfaceBuffers seen;
   fast_frame(particles, options, view, &seen);
-  const auto covered = std::count_if(seen.depth.begin(), seen.depth.end(), [](float d) { return std::isfinite(d); });
   Json json;
   json["particles"] = particles.size();
   json["width"] = view.width;
@@ -171,11 +202,13 @@ Json measure(const RaycastArguments& arguments) {
   json["threads"] = thread_count();
   json["instruction_set"] =
       arguments.instruction_set == "best" ? instruction_sets().front() : arguments.instruction_set;
-  json["covered_pixels"] = covered;
+  json["covered_pixels"] = covered_pixels(seen);
   json["stages_ms"] = json_of(fast.stages);
   json["frame_ms"] = fast.frame_ms;
   json["peak_rss_bytes"] = peak;
   if (arguments.iso_sweep) json["iso_sweep"] = iso_sweep(particles, options, view, arguments.frames);
+  if (arguments.size_range > 0)
+    json.update(of_different_sizes(particles, options, view, arguments.frames, arguments.size_range));
   const PlainFrame plain = plain_frame(particles, options, view);
   json["plain_frame_ms"] = plain.frame_ms;
   json["plain_measured_size"] = {plain.grid.view.width, plain.grid.view.height};
@@ -200,6 +233,10 @@ void print(const Json& json) {
   std::cout << fmt::format("  differs in {:.4f} % of the pixels; depth within {:.5f} spacings in 99 % of them\n",
                            100 * json["hit_mismatch"].get<double>(), json["depth_error_p99_spacings"].get<double>());
   std::cout << fmt::format("  peak memory   {:>10.1f} MB\n", json["peak_rss_bytes"].get<double>() / 1e6);
+  if (json.contains("sizes_ratio"))
+    std::cout << fmt::format("  {:<14}{:>10.1f} ms, {:.2f} times that of equal ones\n",
+                             "sizes of 1 to " + json["size_range"].dump(), json["sizes_frame_ms"].get<double>(),
+                             json["sizes_ratio"].get<double>());
   if (json.contains("iso_sweep"))
     for (const auto& entry : json["iso_sweep"])
       std::cout << fmt::format("  iso {:<10}{:>10.1f} ms\n", entry["iso"].get<double>(),
@@ -221,6 +258,11 @@ void add_bench_raycast(CLI::App& bench) {
                    "Vector instructions to use, such as avx3, avx2, sse4 or best (default: best)")
       ->type_name("NAME");
   command->add_flag("--iso-sweep", arguments->iso_sweep, "Measure for iso-values from 0.3 to 0.7 as well");
+  command
+      ->add_option("--size-range", arguments->size_range,
+                   "Measure water as well whose every other slab is of particles up to N times as large")
+      ->check(CLI::Range(2, 64))
+      ->type_name("N");
   add_json(*command, arguments->json);
   command->footer(
       "A frame is the building of the surface from the particles and one look at it: depth, normals, thickness.\n"
