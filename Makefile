@@ -3,7 +3,7 @@ JOBS ?= $(shell nproc)
 BENCH ?= raycast --particles 1000000 --size 1024x1024 --json
 PROGRAM := build/release/meniscus
 
-.PHONY: all build demo test bench format packages clean
+.PHONY: all build demo test bench bench-peers format packages clean
 all: build
 
 build: build/release/build.ninja
@@ -20,6 +20,12 @@ test: build
 bench: build/release/build.ninja
 	cmake --build --preset release --parallel $(JOBS) --target meniscus_app
 	$(PROGRAM) bench $(BENCH)
+
+# Another program on the same particles: its packages are installed, and its driver is built in a folder of its own.
+bench-peers: build/release/build.ninja
+	cmake --build --preset release --parallel $(JOBS) --target meniscus_app
+	tools/install_packages.sh bench/peers/packages.txt
+	bench/peers/run.sh $(PROGRAM) build/peers
 
 # Once configured, ninja itself sees when a CMake file has changed.
 build/release/build.ninja: CMakePresets.json | packages

@@ -6,6 +6,8 @@ void add_bench(CLI::App& program) {
   CLI::App* bench = program.add_subcommand("bench", "Measure stages on made-up scenes");
   bench->require_subcommand(1);
   add_bench_raycast(*bench);
+  add_bench_table1(*bench);
+  add_bench_temporal(*bench);
   add_bench_caustics(*bench);
   add_bench_density(*bench);
   add_bench_refraction(*bench);

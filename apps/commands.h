@@ -27,6 +27,8 @@ void add_render(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_bench(CLI::App& program);
 void add_bench_raycast(CLI::App& bench);
+void add_bench_table1(CLI::App& bench);
+void add_bench_temporal(CLI::App& bench);
 void add_bench_caustics(CLI::App& bench);
 void add_bench_density(CLI::App& bench);
 void add_bench_refraction(CLI::App& bench);

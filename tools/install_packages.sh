@@ -1,9 +1,13 @@
 #!/usr/bin/env bash
-# Installs those packages of packages.txt that are missing, with apt-get; silent when nothing is missing.
+# Installs those packages of packages.txt, or of the lists named, that are missing, with apt-get; silent when nothing is
+# missing.
+#
+#     tools/install_packages.sh [LIST ...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-mapfile -t wanted < <(sed 's/#.*//' packages.txt | tr -s '[:space:]' '\n' | sed '/^$/d')
+[ $# -gt 0 ] || set -- packages.txt
+mapfile -t wanted < <(sed 's/#.*//' "$@" | tr -s '[:space:]' '\n' | sed '/^$/d')
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "This is not Debian: whatever gives the following must be installed by hand: ${wanted[*]}" >&2
   exit 0

@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <iostream>
+#include <memory>
+
+#include "bench_crown.h"
+#include "bench_options.h"
+#include "commands.h"
+#include "json.h"
+#include "meniscus/render.h"
+
+namespace meniscus::apps {
+namespace {
+
+constexpr float kOrbitDeg = 0.2f;    ///< a frame
+constexpr float kFlow = 0.0025f;     ///< m a frame, at most
+constexpr float kFlowPeriod = 0.8f;  ///< m from eddy to eddy
+
+struct TemporalArguments {
+  std::size_t particles = 1'000'000;
+  std::vector<float> px_per_spacing;
+  int frames = 6;
+  int rays = 8;
+  int threads = 0;
+  bool json = false;
+};
+
+/// The camera of the crown, turned about its axis.
+View turned_view(int size, float degrees) {
+  View view = crown_view(size, size);
+  const float angle = degrees * 0.01745329252f, c = std::cos(angle), s = std::sin(angle);
+  const auto turned = [&](vec3 v) { return vec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x); };
+  view.eye = turned(view.eye);
+  view.right = turned(view.right);
+  view.up = turned(view.up);
+  view.forward = turned(view.forward);
+  return view;
+}
+
+/// The crown after some frames of a flow of three crossed shears: each component depends on the other two coordinates
+/// only, so that nothing is compressed.
+Particles flowed(const Particles& crown, float frames) {
+  Particles moved = crown;
+  constexpr float k = 6.2831853f / kFlowPeriod,
+                  far = kFlow / 3.4641016f;  // 2 sqrt(3): the most that they can add up to
+  parallel_for(crown.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const vec3 p = crown.position(i);
+      moved.x[i] += frames * far * (std::sin(k * p.z) + std::cos(k * p.y));
+      moved.y[i] += frames * far * (std::sin(k * p.x) + std::cos(k * p.z));
+      moved.z[i] += frames * far * (std::sin(k * p.y) + std::cos(k * p.x));
+    }
+  });
+  return moved;
+}
+
+/// What a screen would show, 0 to 1, in steps that look alike: without rounding.
+Image<vec3> displayed(const Image<vec3>& radiance) {
+  Image<vec3> shown(radiance.width(), radiance.height());
+  for (std::size_t i = 0; i < radiance.size(); ++i) {
+    const vec3 linear = tone_mapped(radiance[i], {});
+    shown[i] = {srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z)};
+  }
+  return shown;
+}
+
+/// Means over squares of n x n pixels, of radiance: what a sensor sees.
+Image<vec3> mean_of_squares(const Image<vec3>& radiance, int n) {
+  Image<vec3> mean(radiance.width() / n, radiance.height() / n);
+  const auto inverse = 1.0f / static_cast<float>(n * n);
+  for (int y = 0; y < n * mean.height(); ++y)
+    for (int x = 0; x < n * mean.width(); ++x) mean(x / n, y / n) += inverse * radiance(x, y);
+  return mean;
+}
+
+double sum_of_squares(const Image<vec3>& a) {
+  double sum = 0;
+  for (const vec3& v : a) sum += glm::dot(v, v);
+  return sum;
+}
+
+Image<vec3> difference(const Image<vec3>& a, const Image<vec3>& b) {
+  Image<vec3> result(a.width(), a.height());
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] - b[i];
+  return result;
+}
+
+/// A few frames of one motion, drawn as the program draws them and by many rays a pixel.
+Json row_of(const Particles& crown, const TemporalArguments& arguments, bool orbit, float px_per_spacing) {
+  const CrownLook look;
+  const RaycastOptions options = crown_options(crown);
+  // The picture's size at which a spacing is so many pixels, at the crown.
+  const View probe = crown_view(1024, 1024);
+  const float height = 1024 * probe.pixel_size(probe.project({0, 0.38f, 0}).z);
+  const int size = std::max(8, static_cast<int>(std::lround(px_per_spacing * height / options.spacing)));
+  std::unique_ptr<Surface> surface;
+  if (orbit) surface = make_raycast_surface(crown, options);
+  double change = 0, truth_change = 0, error = 0, error_change = 0;
+  Image<vec3> picture_before, truth_before, error_before;
+  for (int frame = 0; frame < arguments.frames; ++frame) {
+    if (!orbit) surface = make_raycast_surface(flowed(crown, static_cast<float>(frame)), options);
+    const View view = turned_view(size, orbit ? kOrbitDeg * static_cast<float>(frame) : 0);
+    const View fine = view.resized(arguments.rays * size, arguments.rays * size);
+    Image<vec3> picture = displayed(look.shaded(view, surface->see(view)));
+    Image<vec3> truth = displayed(mean_of_squares(look.shaded(fine, surface->see(fine)), arguments.rays));
+    Image<vec3> off = difference(picture, truth);
+    error += sum_of_squares(off);
+    if (frame > 0) {
+      change += sum_of_squares(difference(picture, picture_before));
+      truth_change += sum_of_squares(difference(truth, truth_before));
+      error_change += sum_of_squares(difference(off, error_before));
+    }
+    picture_before = std::move(picture);
+    truth_before = std::move(truth);
+    error_before = std::move(off);
+  }
+  const double values = 3.0 * size * size;  // of a picture
+  const auto rms = [&](double sum, int pictures) { return std::sqrt(sum / (values * pictures)); };
+  const double change_rms = rms(change, arguments.frames - 1), truth_rms = rms(truth_change, arguments.frames - 1);
+  return {{"motion", orbit ? "orbit" : "flow"},
+          {"px_per_spacing", json_of(px_per_spacing)},
+          {"size", size},
+          {"change_rms", change_rms},
+          {"truth_change_rms", truth_rms},
+          {"ratio", change_rms / truth_rms},
+          {"error_rms", rms(error, arguments.frames)},
+          {"error_change_rms", rms(error_change, arguments.frames - 1)}};
+}
+
+Json measure(const TemporalArguments& arguments) {
+  const ThreadLimit limit(arguments.threads);
+  const Particles crown = synthetic_crown(arguments.particles);
+  std::vector<float> wanted = arguments.px_per_spacing;
+  if (wanted.empty()) wanted = {0.5f, 1, 2};
+  Json rows = Json::array();
+  for (const bool orbit : {true, false})
+    for (const float px : wanted) rows.push_back(row_of(crown, arguments, orbit, px));
+  return {{"scene", "crown"},
+          {"particles", crown.size()},
+          {"frames", arguments.frames},
+          {"rays_a_pixel", arguments.rays * arguments.rays},
+          {"orbit_deg_a_frame", json_of(kOrbitDeg)},
+          {"flow_m_a_frame", json_of(kFlow)},
+          {"rows", std::move(rows)}};
+}
+
+void print(const Json& json) {
+  std::cout << fmt::format("{} particles, {} frames; against {} rays a pixel; in shares of white\n",
+                           json["particles"].get<std::size_t>(), json["frames"].get<int>(),
+                           json["rays_a_pixel"].get<int>());
+  std::cout << fmt::format("{:<8}{:>12}{:>10}{:>10}{:>8}{:>10}{:>14}\n", "motion", "px a spacing", "change", "truth",
+                           "ratio", "error", "error change");
+  for (const Json& row : json["rows"])
+    std::cout << fmt::format(
+        "{:<8}{:>12.2f}{:>10.4f}{:>10.4f}{:>8.2f}{:>10.4f}{:>14.4f}\n", row["motion"].get<std::string>(),
+        row["px_per_spacing"].get<double>(), row["change_rms"].get<double>(), row["truth_change_rms"].get<double>(),
+        row["ratio"].get<double>(), row["error_rms"].get<double>(), row["error_change_rms"].get<double>());
+}
+
+}  // namespace
+
+void add_bench_temporal(CLI::App& bench) {
+  CLI::App* command = bench.add_subcommand("temporal", "Shimmer of a moving crown against many rays a pixel");
+  const auto arguments = std::make_shared<TemporalArguments>();
+  add_particles(*command, arguments->particles, 1000, 200'000'000, "Particles of the crown (default: 1000000)");
+  command
+      ->add_option("--px-per-spacing", arguments->px_per_spacing,
+                   "Pixels that a spacing takes at the crown, with commas (default: 0.5,1,2)")
+      ->type_name("PX,...")
+      ->delimiter(',')
+      ->check(CLI::Range(0.05, 32.0).description(""));
+  command->add_option("--frames", arguments->frames, "Frames of each motion (default: 6)")
+      ->type_name("N")
+      ->check(CLI::Range(2, 1000).description(""));
+  command->add_option("--rays", arguments->rays, "Rays along the edge of a pixel of the truth (default: 8)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 32).description(""));
+  add_threads(*command, arguments->threads);
+  add_json(*command, arguments->json);
+  command->footer(
+      "orbit: the camera turns by 0.2 degrees a frame; flow: the water moves by up to 2.5 mm a frame. The pictures "
+      "are\n"
+      "so small that a spacing takes the pixels asked for. change_rms is the change from frame to frame,\n"
+      "truth_change_rms that of pictures of many rays a pixel, averaged after shading; what ratio is above 1 is\n"
+      "shimmer. error_rms is the difference to the truth, error_change_rms its change from frame to frame. All are\n"
+      "root mean squares over the values of the developed pictures, 0 to 1, not rounded.");
+  run_with(*command, arguments, measure, print);
+}
+
+}  // namespace meniscus::apps
