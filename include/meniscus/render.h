@@ -60,20 +60,12 @@ struct SizesBy {
   bool empty() const { return radius.empty() && smoothing_length.empty(); }
 };
 
-/// Attributes that the particles of a ray-cast surface have their sizes from; empty names: they are alike.
-struct SizesBy {
-  std::string radius;            ///< m, half of each particle's spacing
-  std::string smoothing_length;  ///< m
-  bool empty() const { return radius.empty() && smoothing_length.empty(); }
-};
-
 /// Everything that one frame is drawn by. settings_of() fills it from guesses; or set what you like.
 struct FrameSettings {
   View view;
   SurfaceMethod method = SurfaceMethod::raycast;
   Show show = Show::water;
   RaycastOptions surface;          ///< spacing > 0 is required
-  SizesBy sizes;                   ///< of SurfaceMethod::raycast
   SizesBy sizes;                   ///< of SurfaceMethod::raycast
   std::optional<ColourBy> colour;  ///< none: the material's own colour
   Material material;
@@ -189,7 +181,6 @@ struct SurveyOptions {
   std::optional<float> spacing;    ///< m; not estimated if set
   std::optional<Axis> up;          ///< not guessed if set
   std::optional<ColourBy> colour;  ///< whose range is looked for, unless it has one
-  SizesBy sizes;                   ///< asked for: if none are, particles that have radii get a note
   SizesBy sizes;                   ///< asked for: if none are, particles that have radii get a note
   int most_frames = 64;            ///< of a longer sequence, this many are read, evenly spread
   bool strict = false;             ///< a frame that cannot be read is an error
@@ -351,7 +342,6 @@ struct PictureOptions {
   SurfaceMethod method = SurfaceMethod::raycast;
   Show show = Show::water;
   RaycastOptions surface;  ///< spacing 0 and smoothing_length 0: from the survey
-  SizesBy sizes;
   SizesBy sizes;
   int drop_isolated = 0;
   std::optional<ColourBy> colour;
