@@ -26,6 +26,11 @@ struct EnvironmentOptions {
   float radiance_scale = 1;  ///< of all of it, >= 0: what stays when lamps take over at night
 };
 
+// Many rays side by side; see scene/ray_block.h.
+struct BlockVectors;
+struct BlockBeams;
+struct RayBlock;
+
 /// Light from all directions. A cheap handle: copies share the tables.
 class Environment {
  public:
@@ -39,6 +44,11 @@ class Environment {
   vec3 radiance(vec3 direction, float roughness) const;
   /// Irradiance on a surface with this unit normal from the sky without the sun.
   vec3 irradiance(vec3 normal) const;
+  /// Both for `count` vectors side by side, to rounding.
+  /// @param wanted  not zero for those that are; the radiance of others is zero or their own
+  void radiance(const BlockVectors& directions, const float* roughness, const std::int32_t* wanted, int count,
+                BlockVectors& radiance) const;
+  void irradiance(const BlockVectors& normals, int count, BlockVectors& irradiance) const;
   /// Unit vector towards the sun; irradiance of the sun on a surface that faces it. A map without a sun has a sun
   /// without light.
   vec3 sun_direction() const;
@@ -47,6 +57,8 @@ class Environment {
   /// reflection shows whose normals vary. It integrates to sun_irradiance() over the sphere.
   vec3 sun_glare(vec3 direction, float variance) const;
   bool sun_visible() const;
+  /// rad^2, of the sun's disc, half of whose width is 0.267 degrees: a quarter of the radius squared.
+  static constexpr float kSunVariance = 5.4e-6f;
 
  private:
   struct Parts;
@@ -253,6 +265,10 @@ class Scene {
   void face_hits(std::span<const Ray> rays, Beam beam, const FaceHits& hits) const;
   void radiance(std::span<const Ray> rays, Beam beam, std::span<vec3> radiance, std::span<float> distance = {}) const;
   void distances(std::span<const Ray> rays, std::span<float> distance) const;
+  /// radiance() and distances() of a block, on this thread; a beam of its own for each ray. `distance` may be null.
+  void block_radiance(const RayBlock& rays, const BlockBeams& beams, BlockVectors& radiance,
+                      float* distance = nullptr) const;
+  void block_distances(const RayBlock& rays, float* distance) const;
   /// Whether a solid stands between two points; their own surfaces do not count.
   bool blocked(vec3 from, vec3 to) const;
   /// Whether a solid stands between a point and the environment in this direction (unit).

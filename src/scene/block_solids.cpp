@@ -30,7 +30,7 @@ void put(RTCRay16& r, unsigned k, vec3 origin, vec3 direction, float limit) {
 
 }  // namespace
 
-void PlacedSolids::hits(const RayBlock& rays, Beam beam, bool described_too, BlockHits& hits) const {
+void PlacedSolids::hits(const RayBlock& rays, const BlockBeams& beams, bool described_too, BlockHits& hits) const {
   int lanes[RayBlock::kRays];
   unsigned count = 0;
   for (int lane = 0; lane < rays.count; ++lane)
@@ -60,7 +60,7 @@ void PlacedSolids::hits(const RayBlock& rays, Beam beam, bool described_too, Blo
       hits.presence[lane] = 1.0f;
       if (!described_too) continue;
       hits.solids[lane] =
-          described(rays.ray(lane), beam, r.ray.tfar[k], r.hit.instID[0][k], r.hit.primID[k], r.hit.u[k], r.hit.v[k]);
+          described(rays.ray(lane), beams.of(lane), r.ray.tfar[k], r.hit.instID[0][k], r.hit.primID[k], r.hit.u[k], r.hit.v[k]);
       for (int c = 0; c < 3; ++c) hits.albedo[c][lane] = hits.solids[lane].albedo[c];
     }
   }

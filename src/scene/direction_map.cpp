@@ -29,7 +29,7 @@ vec3 on_octahedron(float x, float y) {
   return {(1.0f - std::abs(y)) * (x < 0 ? -1.0f : 1.0f), (1.0f - std::abs(x)) * (y < 0 ? -1.0f : 1.0f), z};
 }
 
-DirectionMap::DirectionMap(int cells, FunctionRef<vec3(vec3)> function) : cells_(cells), nodes_(cells + 1, cells + 1) {
+DirectionMap::DirectionMap(int cells, FunctionRef<vec3(vec3)> function) : cells_(cells), nodes_(cells + 1, cells + 2) {
   const float step = 2.0f / static_cast<float>(cells);
   parallel_for(static_cast<std::size_t>(cells) + 1, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j)

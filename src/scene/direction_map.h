@@ -27,6 +27,10 @@ class DirectionMap {
   /// Fills the table from function(direction), in parallel.
   DirectionMap(int cells, FunctionRef<vec3(vec3)> function);
 
+  /// The table, row by row; one more row of any values follows it.
+  const vec3* nodes() const { return nodes_.data(); }
+  int cells() const { return cells_; }
+
   /// Interpolated value; `direction` need not be unit, but not zero.
   vec3 at(vec3 direction) const {
     const float scale = 1.0f / (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "meniscus/scene.h"
-#include "scene/direction_map.h"
+#include "scene/direction_look_up.h"
 #include "scene/equirectangular.h"
 #include "scene/hdr_file.h"
 #include "scene/sky.h"
@@ -19,11 +19,10 @@ struct Level {
   float sigma;  ///< rad
   int cells;
 };
-constexpr std::array<Level, 5> kLevels{{{0.032f, 256}, {0.128f, 128}, {0.288f, 64}, {0.512f, 48}, {0.8f, 48}}};
+constexpr std::array<Level, DirectionLevels::kBlurred> kLevels{
+    {{0.032f, 256}, {0.128f, 128}, {0.288f, 64}, {0.512f, 48}, {0.8f, 48}}};
 constexpr int kSharpCells = 320;
 constexpr int kIrradianceCells = 32;
-/// Variance of the sun's disc, half of whose width is 0.267 degrees: a quarter of the radius squared.
-constexpr float kDiscVariance = 5.4e-6f;
 
 bool has_length(vec3 v) {
   const float length = glm::length(v);
@@ -104,13 +103,33 @@ vec3 Environment::irradiance(vec3 normal) const {
   return parts_->scale * parts_->irradiance.at(parts_->frame.local(normal));
 }
 
+void Environment::radiance(const BlockVectors& directions, const float* roughness, const std::int32_t* wanted,
+                           int count, BlockVectors& result) const {
+  const Parts& parts = *parts_;
+  if (!parts.map.empty()) {
+    for (int lane = 0; lane < count; ++lane)
+      result.set(lane, wanted[lane] != 0 ? radiance(directions.get(lane), roughness[lane]) : vec3{0.0f});
+    return;
+  }
+  DirectionLevels levels;
+  levels.maps[0] = &parts.sharp;
+  for (std::size_t k = 0; k < kLevels.size(); ++k) levels.maps[k + 1] = &parts.levels[k];
+  look_up(levels, parts.frame, parts.scale, directions, roughness, wanted, count, result);
+}
+
+void Environment::irradiance(const BlockVectors& normals, int count, BlockVectors& result) const {
+  DirectionLevels levels;
+  levels.maps[0] = &parts_->irradiance;
+  look_up(levels, parts_->frame, parts_->scale, normals, nullptr, nullptr, count, result);
+}
+
 vec3 Environment::sun_direction() const { return parts_->sun_direction; }
 vec3 Environment::sun_irradiance() const { return parts_->sun_irradiance; }
 bool Environment::sun_visible() const { return parts_->sun_visible; }
 
 vec3 Environment::sun_glare(vec3 direction, float variance) const {
   // exp(-(1 - cos) / s) / (2 pi s (1 - exp(-2 / s))) integrates to one over the sphere; a Gaussian of variance s.
-  const float s = kDiscVariance + std::max(variance, 0.0f);
+  const float s = kSunVariance + std::max(variance, 0.0f);
   // Half the squared chord is 1 - cos without its cancellation.
   const vec3 chord = direction - parts_->sun_direction;
   const float above = 0.5f * glm::dot(chord, chord);

@@ -25,7 +25,7 @@ class PlacedSolids {
   unsigned passing(std::span<const Ray> rays) const;
   /// The first triangles along the rays that are said to be near, where they come before what is met so far.
   /// @param described_too  false: distance and face only
-  void hits(const RayBlock& rays, Beam beam, bool described_too, BlockHits& hits) const;
+  void hits(const RayBlock& rays, const BlockBeams& beams, bool described_too, BlockHits& hits) const;
   /// Whether rays beside this one, as far as width + spread * their length, may meet any.
   bool near(const Ray& ray, float width, float spread) const;
   /// Grown by more than rounding.

@@ -31,8 +31,13 @@ struct SolidsBox {
 /// The same as TankBody::hit() and Scene::Parts::ground_hit() to rounding.
 /// @param tie      fraction of the distance within which the tank comes before the ground
 /// @param colours  false: albedos are not asked for, and without a meaning
-void plane_hits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, Beam beam, float tie, bool colours,
-                BlockHits& hits);
+void plane_hits(const Planes& planes, const SolidsBox& solids, const RayBlock& rays, const BlockBeams& beams, float tie,
+                bool colours, BlockHits& hits);
+
+/// What is seen where there is nothing but an evenly lit ground and what is behind it.
+/// @param light     what leaves a white ground
+/// @param radiance  what is behind; becomes what is seen
+void light_ground(const BlockHits& hits, vec3 light, int count, BlockVectors& radiance);
 
 /// The sun as light on planes.
 struct SunPath {

@@ -20,18 +20,18 @@ namespace {
 /// One vector of rays. Faces are kept as floats until they are stored.
 class Meeting {
  public:
-  HWY_INLINE Meeting(const Planes& planes, const RayBlock& rays, int first)
-      : planes_(planes), rays_(rays), first_(static_cast<std::size_t>(first)) {}
+  HWY_INLINE Meeting(const Planes& planes, const RayBlock& rays, const BlockBeams& beams, int first)
+      : planes_(planes), rays_(rays), beams_(beams), first_(static_cast<std::size_t>(first)) {}
 
-  HWY_INLINE void run(const SolidsBox& solids, Beam beam, float tie, bool colours, BlockHits& hits) const {
+  HWY_INLINE void run(const SolidsBox& solids, float tie, bool colours, BlockHits& hits) const {
     const Tag d;
     Vec best = all(std::numeric_limits<float>::infinity()), face = all(static_cast<float>(kNothing));
     Vec red = hn::Zero(d), green = red, blue = red, presence = all(1.0f);
     if (planes_.tank && planes_.tank->tank().style == TankStyle::tiled)
-      tiled(beam, colours, best, face, red, green, blue);
+      tiled(colours, best, face, red, green, blue);
     else if (planes_.tank)
       bars(best, face, red, green, blue);
-    if (planes_.ground.visible) ground(beam, tie, colours, best, face, presence, red, green, blue);
+    if (planes_.ground.visible) ground(tie, colours, best, face, presence, red, green, blue);
     hn::Store(best, d, hits.distance + first_);
     hn::Store(red, d, hits.albedo[0] + first_);
     hn::Store(green, d, hits.albedo[1] + first_);
@@ -54,6 +54,10 @@ class Meeting {
   HWY_INLINE Vec origin(int axis) const { return hn::Load(Tag(), rays_.origin[axis] + first_); }
   HWY_INLINE Vec direction(int axis) const { return hn::Load(Tag(), rays_.direction[axis] + first_); }
   HWY_INLINE Vec at(int axis, Vec distance) const { return hn::Add(origin(axis), hn::Mul(distance, direction(axis))); }
+  HWY_INLINE Vec width_at(Vec distance) const {
+    const Tag d;
+    return hn::Add(hn::Load(d, beams_.width + first_), hn::Mul(hn::Load(d, beams_.spread + first_), distance));
+  }
   HWY_INLINE Vec along(vec3 v) const {
     return hn::Add(hn::Add(hn::Mul(direction(0), all(v.x)), hn::Mul(direction(1), all(v.y))),
                    hn::Mul(direction(2), all(v.z)));
@@ -69,7 +73,7 @@ class Meeting {
   }
 
   /// See TankBody::tiled_hit().
-  HWY_INLINE void tiled(Beam beam, bool colours, Vec& best, Vec& face, Vec& red, Vec& green, Vec& blue) const {
+  HWY_INLINE void tiled(bool colours, Vec& best, Vec& face, Vec& red, Vec& green, Vec& blue) const {
     const Tag d;
     const Vec zero = hn::Zero(d);
     const TankBody& tank = *planes_.tank;
@@ -112,7 +116,7 @@ class Meeting {
     if (!colours) return;
     Vec joints = hn::IfThenElseZero(rim, all(1.0f));
     const Mask tiles = hn::AndNot(rim, walls);
-    if (!hn::AllFalse(d, tiles)) joints = hn::IfThenElse(tiles, joints_at(tank, at_wall, face, beam), joints);
+    if (!hn::AllFalse(d, tiles)) joints = hn::IfThenElse(tiles, joints_at(tank, at_wall, face), joints);
     const Mask any = hn::Or(walls, rim);
     const vec3 tile = tank.tank().albedo, joint = tank.tank().joint_albedo;
     red = hn::IfThenElse(any, mixed(tile.x, joint.x, joints), red);
@@ -121,7 +125,7 @@ class Meeting {
   }
 
   /// See TankBody::tiles(): the fraction of joints.
-  HWY_INLINE Vec joints_at(const TankBody& tank, Vec distance, Vec face, Beam beam) const {
+  HWY_INLINE Vec joints_at(const TankBody& tank, Vec distance, Vec face) const {
     const Mask on_x = hn::Lt(face, all(1.5f)), on_z = hn::Gt(face, all(3.5f));
     const auto chosen = [&](Vec x, Vec y, Vec z)
                             HWY_ATTR { return hn::IfThenElse(on_x, x, hn::IfThenElse(on_z, z, y)); };
@@ -129,7 +133,7 @@ class Meeting {
     const auto place = [&](int axis)
                            HWY_ATTR { return hn::Div(hn::Sub(at(axis, distance), all(low[axis])), all(tile[axis])); };
     const Vec x = place(0), y = place(1), z = place(2);
-    const Vec width = hn::Add(all(beam.width), hn::Mul(all(beam.spread), distance));
+    const Vec width = width_at(distance);
     const Vec cos_in = hn::Max(all(1e-4f), hn::Abs(chosen(direction(0), direction(1), direction(2))));
     const Vec width_s = footprint_of(width, cos_in, chosen(direction(1), direction(2), direction(0)));
     const Vec width_t = footprint_of(width, cos_in, chosen(direction(2), direction(0), direction(1)));
@@ -196,7 +200,7 @@ class Meeting {
   }
 
   /// See Scene::Parts::ground_hit().
-  HWY_INLINE void ground(Beam beam, float tie, bool colours, Vec& best, Vec& face, Vec& presence, Vec& red, Vec& green,
+  HWY_INLINE void ground(float tie, bool colours, Vec& best, Vec& face, Vec& presence, Vec& red, Vec& green,
                          Vec& blue) const {
     const Tag d;
     const Ground& g = planes_.ground;
@@ -232,7 +236,7 @@ class Meeting {
     if (!colours) return;
     Vec first = one;
     if (g.square > 0) {
-      const Vec width = hn::Add(all(beam.width), hn::Mul(all(beam.spread), distance));
+      const Vec width = width_at(distance);
       const Vec scale = all(1.0f / g.square);
       const Vec width_u = hn::Mul(footprint_of(width, down, along(planes_.u_axis)), scale);
       const Vec width_v = hn::Mul(footprint_of(width, down, along(planes_.v_axis)), scale);
@@ -248,6 +252,7 @@ class Meeting {
 
   const Planes& planes_;
   const RayBlock& rays_;
+  const BlockBeams& beams_;
   std::size_t first_;
 };
 

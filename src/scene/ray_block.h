@@ -7,25 +7,33 @@
 
 namespace meniscus {
 
+/// Vectors (or colours) of a block: by axis (or channel), then by lane.
+struct BlockVectors {
+  static constexpr int kLanes = 64;
+  alignas(64) float at[3][kLanes];
+
+  float* operator[](int axis) { return at[axis]; }
+  const float* operator[](int axis) const { return at[axis]; }
+  vec3 get(int lane) const { return {at[0][lane], at[1][lane], at[2][lane]}; }
+  void set(int lane, vec3 v) {
+    for (int axis = 0; axis < 3; ++axis) at[axis][lane] = v[axis];
+  }
+};
+
 /// Up to kRays rays. Those from `count` to the next multiple of 16 are copies of another, so that whole vectors can be
 /// worked on.
 struct RayBlock {
-  static constexpr int kRays = 64;
-  alignas(64) float origin[3][kRays];     ///< by axis
-  alignas(64) float direction[3][kRays];  ///< by axis; unit vectors
+  static constexpr int kRays = BlockVectors::kLanes;
+  BlockVectors origin;
+  BlockVectors direction;  ///< unit
   int count = 0;
 
   void set(int lane, const Ray& ray) {
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis][lane] = ray.origin[axis];
-      direction[axis][lane] = ray.direction[axis];
-    }
+    origin.set(lane, ray.origin);
+    direction.set(lane, ray.direction);
   }
-  Ray ray(int lane) const {
-    return {{origin[0][lane], origin[1][lane], origin[2][lane]},
-            {direction[0][lane], direction[1][lane], direction[2][lane]}};
-  }
-  vec3 direction_of(int lane) const { return {direction[0][lane], direction[1][lane], direction[2][lane]}; }
+  Ray ray(int lane) const { return {origin.get(lane), direction.get(lane)}; }
+  vec3 direction_of(int lane) const { return direction.get(lane); }
   vec3 point(int lane, float distance) const {
     const Ray r = ray(lane);
     return r.origin + distance * r.direction;
@@ -36,6 +44,23 @@ struct RayBlock {
     const Ray last = ray(rays - 1);
     for (int lane = rays; lane % 16 != 0; ++lane) set(lane, last);
   }
+};
+
+/// The beams of a block's rays, padded as those are.
+struct BlockBeams {
+  alignas(64) float width[RayBlock::kRays];      ///< see Beam
+  alignas(64) float spread[RayBlock::kRays];     ///< see Beam
+  alignas(64) float roughness[RayBlock::kRays];  ///< of the environment where a ray meets nothing
+
+  /// All the same, the environment sharp.
+  void fill(Beam beam) {
+    for (int lane = 0; lane < RayBlock::kRays; ++lane) {
+      width[lane] = beam.width;
+      spread[lane] = beam.spread;
+      roughness[lane] = 0.0f;
+    }
+  }
+  Beam of(int lane) const { return {width[lane], spread[lane]}; }
 };
 
 /// What a ray meets: a plane with one of seven normals, or a solid.

@@ -24,9 +24,11 @@ void close(BlockPoints& points, int count) {
   }
 }
 
-/// Calls body(block, hits, first) for the rays in blocks, on all threads; the hits are to be overwritten.
+/// Calls body(block, beams, hits, first) for the rays in blocks, on all threads; the hits are to be overwritten.
 template <class Body>
-void for_each_block(std::span<const Ray> rays, Body body) {
+void for_each_block(std::span<const Ray> rays, Beam beam, Body body) {
+  BlockBeams beams;
+  beams.fill(beam);
   parallel_for(rays.size(), 16 * RayBlock::kRays, [&](std::size_t begin, std::size_t end) {
     RayBlock block;
     BlockHits hits;
@@ -34,7 +36,7 @@ void for_each_block(std::span<const Ray> rays, Body body) {
       const auto count = static_cast<int>(std::min<std::size_t>(RayBlock::kRays, end - first));
       for (int lane = 0; lane < count; ++lane) block.set(lane, rays[first + static_cast<std::size_t>(lane)]);
       block.close(count);
-      body(block, hits, first);
+      body(block, beams, hits, first);
     }
   });
 }
@@ -45,15 +47,15 @@ void check(bool same_length) {
 
 }  // namespace
 
-void Scene::Parts::meet(const RayBlock& rays, Beam beam, bool distances_only, BlockHits& hits) const {
+void Scene::Parts::meet(const RayBlock& rays, const BlockBeams& beams, bool distances_only, BlockHits& hits) const {
   const Planes planes{body.get(), ground, u_axis, v_axis};
   static const SolidsBox none;
-  plane_hits(planes, solids ? solids->box() : none, rays, beam, distances_only ? 0.0f : kTie, !distances_only, hits);
-  if (solids) solids->hits(rays, beam, !distances_only, hits);
-  if (cover && !distances_only) cover_hits(rays, beam, hits);
+  plane_hits(planes, solids ? solids->box() : none, rays, beams, distances_only ? 0.0f : kTie, !distances_only, hits);
+  if (solids) solids->hits(rays, beams, !distances_only, hits);
+  if (cover && !distances_only) cover_hits(rays, beams, hits);
 }
 
-void Scene::Parts::cover_hits(const RayBlock& rays, Beam beam, BlockHits& hits) const {
+void Scene::Parts::cover_hits(const RayBlock& rays, const BlockBeams& beams, BlockHits& hits) const {
   int lanes[RayBlock::kRays];
   vec3 points[RayBlock::kRays], directions[RayBlock::kRays];
   float widths[RayBlock::kRays];
@@ -65,7 +67,7 @@ void Scene::Parts::cover_hits(const RayBlock& rays, Beam beam, BlockHits& hits) 
     lanes[count] = lane;
     points[count] = rays.point(lane, hits.distance[lane]);
     directions[count] = rays.direction_of(lane);
-    widths[count] = beam.width + beam.spread * hits.distance[lane];
+    widths[count] = beams.width[lane] + beams.spread[lane] * hits.distance[lane];
     covered[count++] = hit_of(hits, lane);
   }
   if (count == 0) return;
@@ -102,7 +104,29 @@ SolidHit Scene::Parts::hit_of(const BlockHits& hits, int lane) const {
   return hit;
 }
 
-void Scene::Parts::shade(const RayBlock& rays, Beam beam, const BlockHits& hits, vec3* radiance) const {
+void Scene::Parts::shade(const RayBlock& rays, const BlockBeams& beams, const BlockHits& hits,
+                         BlockVectors& radiance) const {
+  // The environment where it is seen.
+  std::int32_t open[RayBlock::kRays];
+  std::int32_t any_open = 0;
+  for (int lane = 0; lane < rays.count; ++lane) {
+    open[lane] =
+        static_cast<std::int32_t>(hits.face[lane] == kNothing) | static_cast<std::int32_t>(hits.presence[lane] < 1.0f);
+    any_open |= open[lane];
+  }
+  const bool ground_alone = !body && !solids && !cover && !water_light && lamps.empty();
+  BlockVectors elsewhere;
+  BlockVectors& behind = ground_alone ? radiance : elsewhere;
+  if (any_open != 0)
+    environment.radiance(rays.direction, beams.roughness, open, rays.count, behind);
+  else
+    behind = {};
+  if (ground_alone) {
+    const vec3 light = plane_skies[kGroundFace] + environment.sun_irradiance() * plane_cosines[kGroundFace];
+    light_ground(hits, kPerPi * light, rays.count, radiance);
+    return;
+  }
+
   const bool bars = body && body->tank().style == TankStyle::glass;
   const vec3 sun = environment.sun_direction(), sun_irradiance = environment.sun_irradiance();
   int lanes[RayBlock::kRays];
@@ -110,18 +134,20 @@ void Scene::Parts::shade(const RayBlock& rays, Beam beam, const BlockHits& hits,
   BlockPoints points;
   vec3 places[RayBlock::kRays], normals[RayBlock::kRays];
   float cosines[RayBlock::kRays];
+  const auto put = [&](int lane, vec3 seen) {
+    const float presence = hits.presence[lane];
+    radiance.set(lane, presence < 1.0f ? glm::mix(behind.get(lane), seen, presence) : seen);
+  };
   for (int lane = 0; lane < rays.count; ++lane) {
     const int face = hits.face[lane];
     if (face == kNothing) {
-      radiance[lane] = environment.radiance(rays.direction_of(lane));
+      radiance.set(lane, behind.get(lane));
       continue;
     }
     // Coats show their surroundings: one by one.
     const bool coated = face == kSolidFace ? hits.solids[lane].roughness < 1.0f : bars && face != kGroundFace;
     if (coated) {
-      radiance[lane] = lit(hit_of(hits, lane), rays.ray(lane), beam);
-      if (hits.presence[lane] < 1.0f)
-        radiance[lane] = glm::mix(environment.radiance(rays.direction_of(lane)), radiance[lane], hits.presence[lane]);
+      put(lane, lit(hit_of(hits, lane), rays.ray(lane), beams.of(lane)));
       continue;
     }
     const vec3 place = rays.point(lane, hits.distance[lane]);
@@ -137,7 +163,7 @@ void Scene::Parts::shade(const RayBlock& rays, Beam beam, const BlockHits& hits,
       points.at[axis][count] = place[axis];
       points.face_normal[axis][count] = face_normal[axis];
     }
-    points.width[count] = beam.width + beam.spread * hits.distance[lane];
+    points.width[count] = beams.width[lane] + beams.spread[lane] * hits.distance[lane];
     places[count] = place;
     normals[count] = normal;
     lanes[count++] = lane;
@@ -170,12 +196,7 @@ void Scene::Parts::shade(const RayBlock& rays, Beam beam, const BlockHits& hits,
       sum += lamp_irradiance(places[k], normals[k], face_normal, light.lamps);
     }
     const vec3 albedo{hits.albedo[0][lane], hits.albedo[1][lane], hits.albedo[2][lane]};
-    radiance[lane] = albedo * kPerPi * sum;
-  }
-  for (int k = 0; k < count; ++k) {
-    const int lane = lanes[k];
-    if (hits.presence[lane] < 1.0f)
-      radiance[lane] = glm::mix(environment.radiance(rays.direction_of(lane)), radiance[lane], hits.presence[lane]);
+    put(lane, albedo * kPerPi * sum);
   }
 }
 
@@ -219,8 +240,8 @@ void Scene::Parts::sun_past_solids(const float* cosines, int count, BlockPoints&
 
 void Scene::hits(std::span<const Ray> rays, Beam beam, std::span<SolidHit> hits) const {
   check(rays.size() == hits.size());
-  for_each_block(rays, [&](const RayBlock& block, BlockHits& met, std::size_t first) {
-    parts_->meet(block, beam, false, met);
+  for_each_block(rays, beam, [&](const RayBlock& block, const BlockBeams& beams, BlockHits& met, std::size_t first) {
+    parts_->meet(block, beams, false, met);
     for (int lane = 0; lane < block.count; ++lane)
       hits[first + static_cast<std::size_t>(lane)] = parts_->hit_of(met, lane);
   });
@@ -235,8 +256,8 @@ void Scene::face_hits(std::span<const Ray> rays, Beam beam, const FaceHits& hits
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(parts_->ground.up[axis]) > 0.99999f)
       names[kGroundFace] = 2 * axis + (parts_->ground.up[axis] > 0 ? 1 : 0);
-  for_each_block(rays, [&](const RayBlock& block, BlockHits& met, std::size_t first) {
-    parts_->meet(block, beam, false, met);
+  for_each_block(rays, beam, [&](const RayBlock& block, const BlockBeams& beams, BlockHits& met, std::size_t first) {
+    parts_->meet(block, beams, false, met);
     std::copy_n(met.distance, block.count, hits.distance.data() + first);
     std::copy_n(met.presence, block.count, hits.presence.data() + first);
     for (int lane = 0; lane < block.count; ++lane) {
@@ -251,19 +272,46 @@ void Scene::face_hits(std::span<const Ray> rays, Beam beam, const FaceHits& hits
 
 void Scene::radiance(std::span<const Ray> rays, Beam beam, std::span<vec3> radiance, std::span<float> distance) const {
   check(rays.size() == radiance.size() && (distance.empty() || rays.size() == distance.size()));
-  for_each_block(rays, [&](const RayBlock& block, BlockHits& met, std::size_t first) {
-    parts_->meet(block, beam, false, met);
-    parts_->shade(block, beam, met, radiance.data() + first);
+  for_each_block(rays, beam, [&](const RayBlock& block, const BlockBeams& beams, BlockHits& met, std::size_t first) {
+    parts_->meet(block, beams, false, met);
+    BlockVectors seen;
+    parts_->shade(block, beams, met, seen);
+    for (int lane = 0; lane < block.count; ++lane) radiance[first + static_cast<std::size_t>(lane)] = seen.get(lane);
     if (!distance.empty()) std::copy_n(met.distance, block.count, distance.data() + first);
   });
 }
 
 void Scene::distances(std::span<const Ray> rays, std::span<float> distance) const {
   check(rays.size() == distance.size());
-  for_each_block(rays, [&](const RayBlock& block, BlockHits& met, std::size_t first) {
-    parts_->meet(block, {}, true, met);
+  for_each_block(rays, {}, [&](const RayBlock& block, const BlockBeams& beams, BlockHits& met, std::size_t first) {
+    parts_->meet(block, beams, true, met);
     std::copy_n(met.distance, block.count, distance.data() + first);
   });
+}
+
+namespace {
+
+/// What a thread keeps for its next block: it is long to make.
+BlockHits& own_hits() {
+  thread_local BlockHits hits;
+  return hits;
+}
+
+}  // namespace
+
+void Scene::block_radiance(const RayBlock& rays, const BlockBeams& beams, BlockVectors& radiance,
+                           float* distance) const {
+  BlockHits& hits = own_hits();
+  parts_->meet(rays, beams, false, hits);
+  parts_->shade(rays, beams, hits, radiance);
+  if (distance) std::copy_n(hits.distance, rays.count, distance);
+}
+
+void Scene::block_distances(const RayBlock& rays, float* distance) const {
+  BlockHits& hits = own_hits();
+  static const BlockBeams none{};
+  parts_->meet(rays, none, true, hits);
+  std::copy_n(hits.distance, rays.count, distance);
 }
 
 void WaterLight::at_each(std::span<const vec3> points, std::span<const vec3> normals, std::span<Light> lights) const {

@@ -60,17 +60,18 @@ struct Scene::Parts {
 
   // The same for the rays of a block.
   /// @param distances_only  as in Scene::distance(): without albedos
-  void meet(const RayBlock& rays, Beam beam, bool distances_only, BlockHits& hits) const;
+  void meet(const RayBlock& rays, const BlockBeams& beams, bool distances_only, BlockHits& hits) const;
   /// Covered ground is a solid from then on, whose normal and coat are its own.
-  void cover_hits(const RayBlock& rays, Beam beam, BlockHits& hits) const;
+  void cover_hits(const RayBlock& rays, const BlockBeams& beams, BlockHits& hits) const;
   SolidHit hit_of(const BlockHits& hits, int lane) const;
   vec3 normal_of(int face) const;
   /// Radiance along each ray: what is met in its light, or the environment.
-  void shade(const RayBlock& rays, Beam beam, const BlockHits& hits, vec3* radiance) const;
+  void shade(const RayBlock& rays, const BlockBeams& beams, const BlockHits& hits, BlockVectors& radiance) const;
   /// Takes away what solids keep of the sun's light. @param cosines  of that light, one a point; only > 0 are looked at
   void sun_past_solids(const float* cosines, int count, BlockPoints& points) const;
   /// Draws the rays of some pixels. @param hits  overwritten
-  void see(const RayBlock& rays, Beam beam, const std::size_t* pixels, BlockHits& hits, SceneBuffers& seen) const;
+  void see(const RayBlock& rays, const BlockBeams& beams, const std::size_t* pixels, BlockHits& hits,
+           SceneBuffers& seen) const;
 };
 
 }  // namespace meniscus

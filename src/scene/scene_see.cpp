@@ -24,14 +24,14 @@ struct Work {
 
 }  // namespace
 
-void Scene::Parts::see(const RayBlock& rays, Beam beam, const std::size_t* pixels, BlockHits& hits,
+void Scene::Parts::see(const RayBlock& rays, const BlockBeams& beams, const std::size_t* pixels, BlockHits& hits,
                        SceneBuffers& seen) const {
-  vec3 radiance[RayBlock::kRays];
-  meet(rays, beam, false, hits);
-  shade(rays, beam, hits, radiance);
+  BlockVectors radiance;
+  meet(rays, beams, false, hits);
+  shade(rays, beams, hits, radiance);
   for (int lane = 0; lane < rays.count; ++lane) {
     const std::size_t i = pixels[lane];
-    seen.radiance[i] = radiance[lane];
+    seen.radiance[i] = radiance.get(lane);
     const int face = hits.face[lane];
     if (face == kNothing) continue;
     seen.depth[i] = hits.distance[lane];
@@ -50,7 +50,8 @@ SceneBuffers Scene::see(const View& view, std::span<const vec2> points, StageTim
   const int height = points.empty() ? view.height : 1;
   SceneBuffers seen{Image<vec3>(width, height), Image<float>(width, height, std::numeric_limits<float>::infinity()),
                     Image<vec3>(width, height), Image<vec3>(width, height)};
-  const Beam beam = beam_of(view);
+  BlockBeams beams;
+  beams.fill(beam_of(view));
   constexpr int kRays = RayBlock::kRays;
   if (!points.empty()) {
     parallel_for(points.size(), 16 * kRays, [&](std::size_t begin, std::size_t end) {
@@ -63,7 +64,7 @@ SceneBuffers Scene::see(const View& view, std::span<const vec2> points, StageTim
           work.points.y[k] = points[first + k].y;
         }
         view_rays(view, work.points, static_cast<int>(count), work.rays);
-        parts_->see(work.rays, beam, work.pixels, work.hits, seen);
+        parts_->see(work.rays, beams, work.pixels, work.hits, seen);
       }
     });
     return seen;
@@ -89,7 +90,7 @@ SceneBuffers Scene::see(const View& view, std::span<const vec2> points, StageTim
           work.points.y[count] = static_cast<float>(y) + 0.5f;
         }
       view_rays(cube ? view.face(face) : view, work.points, count, work.rays);
-      parts_->see(work.rays, beam, work.pixels, work.hits, seen);
+      parts_->see(work.rays, beams, work.pixels, work.hits, seen);
     }
   });
   return seen;

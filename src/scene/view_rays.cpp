@@ -33,7 +33,7 @@ void ViewRays(const View& view, const BlockPixels& pixels, RayBlock& rays) {
     }
     if (!perspective) continue;
     const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(square));
-    for (auto& direction : rays.direction) hn::Store(hn::Mul(hn::Load(d, direction + i), inverse), d, direction + i);
+    for (auto& direction : rays.direction.at) hn::Store(hn::Mul(hn::Load(d, direction + i), inverse), d, direction + i);
   }
 }
 

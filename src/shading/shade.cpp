@@ -7,6 +7,7 @@
 #include "meniscus/shading.h"
 #include "shading/normal_variance.h"
 #include "shading/refraction.h"
+#include "shading/shade_blocks.h"
 #include "shading/trace.h"
 #include "shading/virtual_eye.h"
 
@@ -44,13 +45,6 @@ void require_material(const Material& material) {
     throw Error(ErrorCode::invalid_argument,
                 "a material's extinction, scattering, body or specular factor is negative or not finite, or its "
                 "roughness not in [0, 1]");
-}
-
-/// The sun's disc, at least a pixel wide.
-vec3 sun_disc(const Ray& ray, Beam beam, const Scene& scene) {
-  const Environment& environment = scene.environment();
-  if (!environment.sun_visible()) return vec3{0.0f};
-  return glm::min(environment.sun_glare(ray.direction, beam.spread * beam.spread), vec3{200.0f});
 }
 
 /// Indices of the pixels by tiles, and within them by blocks: what comes one after another lies close together.
@@ -95,6 +89,14 @@ class Shading {
   }
 
   Image<vec3> run() {
+    const ShadeInputs inputs{view_, points_, water_, scene_, material_, optics_, variance_, behind_, beam_};
+    if (takes_blocks(inputs)) {
+      parallel_for(picture_.size(), 4 * kGrain, [&](std::size_t begin, std::size_t end) {
+        shade_pixels(inputs, begin, end, picture_.data());
+        for (std::size_t i = begin; glass_ && i < end; ++i) behind_glass(i);
+      });
+      return std::move(picture_);
+    }
     const bool traced = optics_.options.refraction == RefractionMethod::ray_traced;
     std::vector<std::uint32_t> order;
     if (traced && points_.empty()) order = by_tiles(view_.width, view_.height);
