@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <vector>
@@ -49,6 +50,35 @@ PictureSize parse_size(std::string_view option, std::string_view text) {
       !fits(size.width) || !fits(size.height))
     refuse(option, text, "WIDTHxHEIGHT, each 1 to 16384 pixels,");
   return size;
+}
+
+std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, double>, 11> kUnits{{{"", 1},
+                                                                        {"B", 1},
+                                                                        {"kB", 1e3},
+                                                                        {"KB", 1e3},
+                                                                        {"MB", 1e6},
+                                                                        {"GB", 1e9},
+                                                                        {"TB", 1e12},
+                                                                        {"KiB", 0x1p10},
+                                                                        {"MiB", 0x1p20},
+                                                                        {"GiB", 0x1p30},
+                                                                        {"TiB", 0x1p40}}};
+  const char* expected = "a size such as 4GB, 512MiB or 0 (units B, kB, MB, GB, TB, KiB, MiB, GiB, TiB)";
+  const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
+  const std::string_view digits = text.substr(0, end);
+  double number = 0;
+  const auto result =
+      fast_float::from_chars(digits.data(), digits.data() + digits.size(), number, fast_float::chars_format::fixed);
+  if (digits.empty() || result.ec != std::errc() || result.ptr != digits.data() + digits.size())
+    refuse(option, text, expected);
+  for (const auto& [unit, factor] : kUnits) {
+    if (text.substr(end) != unit) continue;
+    if (!(number * factor <= 0x1p60)) refuse(option, text, "a size of at most 1 EiB");
+    if (number > 0 && number * factor < 1) refuse(option, text, expected);
+    return static_cast<std::uint64_t>(number * factor);
+  }
+  refuse(option, text, expected);
 }
 
 PointLight parse_lamp(std::string_view option, std::string_view text) {

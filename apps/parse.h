@@ -1,6 +1,7 @@
 /// Option values of several parts. All throw UsageError naming the option and what was expected.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -26,6 +27,9 @@ std::pair<float, float> parse_range(std::string_view option, std::string_view te
 
 /// "x,y,z:intensity" or "x,y,z:r,g,b"
 PointLight parse_lamp(std::string_view option, std::string_view text);
+
+/// "4GB", "1.5GiB", "512MiB", "0": bytes, with B, kB, MB, GB, TB (thousands) or KiB, MiB, GiB, TiB (1024s).
+std::uint64_t parse_bytes(std::string_view option, std::string_view text);
 
 /// "A:B:STEP" as Python slices (each part may be missing, negative counts from the end), or "N" alone.
 struct FrameSelection {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "estimate_text.h"
 #include "json.h"
 #include "meniscus/render.h"
 #include "picture_options.h"
@@ -24,6 +25,8 @@ struct RenderArguments {
   std::optional<int> quality_crf;
   bool quiet = false;
   int threads = 0;
+  std::uint64_t memory_limit = 0;  ///< bytes; 0: none
+  bool dry_run = false, json = false;
 };
 
 /// "depth,coverage"
@@ -95,10 +98,22 @@ void render(RenderArguments& arguments) {
   const FrameSequence sequence = arguments.input.find_in(scene, arguments.quiet);
   arguments.sequence.strict = arguments.input.strict;
   arguments.sequence.turntable = turntable_of(arguments, picture);
+  const std::uint64_t made_particles = scene.waves ? scene.waves->particles : 0;
+  const ThreadLimit limit(arguments.threads);
+  picture.memory_limit = arguments.memory_limit;
+  if (arguments.json && !arguments.dry_run) throw UsageError("--json is what --dry-run prints: give both, or --report");
+  if (arguments.dry_run) {
+    check_output_name(sequence, arguments.sequence);
+    const RunEstimate run = estimate_run(sequence, picture, arguments.sequence, made_particles);
+    std::cout << (arguments.json ? text_of(json_of(run), 2) + "\n" : estimate_text(run, arguments.sequence.output));
+    check_memory(sequence, picture, arguments.sequence, made_particles);
+    return;
+  }
+  check_memory(sequence, picture, arguments.sequence, made_particles);
   check_output(sequence, arguments.sequence);
+  hold_memory_below(arguments.memory_limit);
   if (!arguments.report_path.empty()) write_text(arguments.report_path, "{}\n");
 
-  const ThreadLimit limit(arguments.threads);
   Progress progress(arguments.quiet);
   SurveyOptions survey_options = arguments.input.survey_options();
   survey_options.colour = picture.colour;
@@ -163,6 +178,36 @@ void add_output(CLI::App& command, RenderArguments& arguments) {
           "Vector instructions to use, such as avx3, avx2, sse4 or best (default: best); the picture is the same")
       ->type_name("NAME")
       ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--memory-limit",
+          [&arguments](const std::string& text) { arguments.memory_limit = parse_bytes("--memory-limit", text); },
+          "Keep to this much memory, such as 4GB or 512MiB, or say before the start that it is not enough; water that "
+          "does not fit as a whole is drawn in parts, where --refraction and --no-caustics allow it (default: 0, no "
+          "limit)")
+      ->type_name("SIZE")
+      ->group(group);
+  command
+      .add_flag("--dry-run", arguments.dry_run,
+                "Print what the run would take in memory, time and disk, and do nothing")
+      ->group(group);
+  command.add_flag("--json", arguments.json, "With --dry-run: print one JSON object")->group(group);
+}
+
+/// Runs, and tells of a limit that was met all the same.
+void render_within(RenderArguments& arguments) {
+  try {
+    render(arguments);
+  } catch (const std::bad_alloc&) {
+    if (arguments.memory_limit == 0) throw;
+    throw Error(ErrorCode::limit_exceeded, {"the run needs more memory than it may use",
+                                            {},
+                                            {},
+                                            {},
+                                            {},
+                                            {},
+                                            "raise --memory-limit, or make the picture smaller"});
+  }
 }
 
 }  // namespace
@@ -181,7 +226,7 @@ void add_render(CLI::App& program) {
       "  meniscus render frames/ -o film.mp4 --color-by velocity --range 0:3 --legend\n"
       "  meniscus render frames/ -o still.png --tank glass --mesh rock.obj --refraction ray_traced\n"
       "  meniscus render examples/pool.json -o pool.png");
-  command->callback([arguments] { render(*arguments); });
+  command->callback([arguments] { render_within(*arguments); });
 }
 
 }  // namespace meniscus::apps

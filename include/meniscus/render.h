@@ -502,18 +502,22 @@ struct RunEstimate {
 
 /// Estimates a run from the frames' headers and file sizes; nothing is written. Memory is within a factor of 1.5, time
 /// within 2: it is measured with a small frame of water that is drawn in the same way, in some 50 ms.
-/// @param spacing     m, where it is known
-/// @param with_times  false: times are left zero, and nothing is drawn
+/// @param made_particles  in a frame, of sequences that are made up without being foreseen
+/// @param with_times      false: times are left zero, and nothing is drawn
 /// @throws Error  not_found, malformed_file ...: no frame has a header that can be understood
 RunEstimate estimate_run(const FrameSequence& sequence, const PictureOptions& picture, const SequenceOptions& options,
-                         bool with_times = true);
+                         std::uint64_t made_particles = 0, bool with_times = true);
 
 /// Refuses a run that cannot keep to picture.memory_limit, and says what would help. Nothing if there is no limit.
 /// @throws Error  limit_exceeded
-void check_memory(const FrameSequence& sequence, const PictureOptions& picture, const SequenceOptions& options);
+void check_memory(const FrameSequence& sequence, const PictureOptions& picture, const SequenceOptions& options,
+                  std::uint64_t made_particles = 0);
 
 /// Lets allocations fail that would bring the process to more than `bytes`, so that nothing else ends it. 0: nothing.
 void hold_memory_below(std::uint64_t bytes);
+
+/// Refuses what check_output() would refuse without touching the disk.
+void check_output_name(const FrameSequence& sequence, const SequenceOptions& options);
 
 // --- Scene files -------------------------------------------------------------------------------------------
 

@@ -165,7 +165,10 @@ void look_at_bgeo(const Source& start, FrameHead& head) {
   head.format = "bgeo";
   head.particles = header->points;
   head.counted = true;
-  head.values = static_cast<double>(header->stride) / kWord - 1;  // but w
+  std::size_t values = 3;
+  for (const PointAttribute& attribute : header->attributes)
+    if (attribute.kind != Kind::index) values += attribute.words;
+  head.values = static_cast<double>(values);
 }
 
 Particles read_bgeo(const Source& source) {

@@ -7,6 +7,7 @@
 
 #include "meniscus/render.h"
 #include "render/body_placement.h"
+#include "render/frame_memory.h"
 #include "render/rainy_frame.h"
 
 namespace meniscus {
@@ -37,7 +38,7 @@ std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable)
   return shots;
 }
 
-void check(const OutputTarget& target, std::size_t pictures) {
+void check_name(const OutputTarget& target, std::size_t pictures) {
   if (pictures > 1 && !target.is_pattern() && !target.is_film())
     throw Error(ErrorCode::invalid_argument, {fmt::format("{} pictures do not fit into one file", pictures),
                                               "a pattern or a film",
@@ -46,6 +47,10 @@ void check(const OutputTarget& target, std::size_t pictures) {
                                               {},
                                               {},
                                               "write to a name with {} for the frame number, or to an .mp4"});
+}
+
+void check(const OutputTarget& target, std::size_t pictures) {
+  check_name(target, pictures);
   target.prepare();
 }
 
@@ -144,7 +149,8 @@ class SequenceRun {
         draw(shot, index, count, report);
     } catch (const Error& error) {
       // A picture that cannot be written will not be followed by one that can, nor is a setting better for the next.
-      if (options_.strict || writing_ || count == 1 || error.code() == ErrorCode::invalid_argument) throw;
+      const bool too_much = picture_.memory_limit > 0 && error.code() == ErrorCode::limit_exceeded;
+      if (options_.strict || writing_ || count == 1 || too_much || error.code() == ErrorCode::invalid_argument) throw;
       if (there) return report;
       if (!first_error_) first_error_ = std::current_exception();
       report.problem = error.what();
@@ -187,6 +193,7 @@ class SequenceRun {
       write_surfels(report, *particles);
       return;
     }
+    keep_to_limit(report, *particles);
     FramePicture frame = render_frame(*particles, *settings_);
     report.particles = frame.particles;
     if (frame.far_away > 0)
@@ -199,6 +206,19 @@ class SequenceRun {
     writing_ = true;
     write(report.output, frame);
     writing_ = false;
+  }
+
+  /// What of the memory that may be used is left for the surface, now that the particles are there.
+  void keep_to_limit(const FrameReport& report, const Particles& particles) {
+    const std::uint64_t limit = picture_.memory_limit;
+    if (limit == 0) return;
+    const std::uint64_t held = resident_bytes() + picture_bytes(picture_, target_.format());
+    settings_->surface_memory = limit > held ? limit - held : 1;
+    const float spacing = settings_->surface.spacing;
+    if (slabs_for(settings_->surface_memory, particles.size(), particles.bounds(), spacing, picture_) > 0) return;
+    const std::uint64_t least =
+        held + surface_bytes(particles.size(), particles.bounds(), spacing, picture_, can_be_cut(picture_) ? 64 : 1);
+    throw does_not_fit(picture_, least, limit, report.path, "the frame does not fit into the memory that may be used");
   }
 
   void write_surfels(FrameReport& report, const Particles& particles) {
@@ -252,6 +272,10 @@ class SequenceRun {
 
 void check_output(const FrameSequence& sequence, const SequenceOptions& options) {
   check(OutputTarget(options.output), shots_of(sequence, options.turntable).size());
+}
+
+void check_output_name(const FrameSequence& sequence, const SequenceOptions& options) {
+  check_name(OutputTarget(options.output), shots_of(sequence, options.turntable).size());
 }
 
 SequenceReport render_sequence(const FrameSequence& sequence, const Survey& survey, const PictureOptions& picture,

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "render/frame_memory.h"
 #include "render/frame_sizes.h"
 #include "render/inside_solids.h"
+#include "surface/slab_surface.h"
 
 namespace meniscus {
 namespace {
@@ -40,6 +42,25 @@ HeightField look_from_above(const Surface& surface, const FrameSettings& setting
   return height_field_of(surface, settings.height_field.up, region, std::max(surface.spacing(), longest / 512));
 }
 
+/// As a whole, or in slabs where that would take more memory than there is.
+std::unique_ptr<Surface> raycast_surface(const Particles& particles, const FrameSettings& settings,
+                                         const RaycastOptions& raycast, std::span<const vec3> colours,
+                                         const ParticleSizes& sizes, StageTimes* times) {
+  const bool whole = settings.surface_memory == 0 || particles.empty();
+  const std::uint64_t pixels = static_cast<std::uint64_t>(settings.view.width) *
+                               static_cast<std::uint64_t>(settings.view.height) *
+                               (settings.antialias == Antialias::full ? 4 : 1);
+  const int slabs = whole ? 1
+                          : slabs_within(settings.surface_memory, particles.size(), particles.bounds(), raycast, pixels,
+                                         !colours.empty());
+  const bool lit_through = settings.caustics && settings.shadow && !settings.colour;
+  if (slabs == 1 || !sizes.empty() ||
+      !can_be_cut(settings.method, settings.optics.refraction,
+                  settings.material.transparent && settings.show == Show::water, lit_through, settings.rain != nullptr))
+    return make_raycast_surface(particles, raycast, colours, times, sizes);
+  return make_slab_surface(particles, raycast, colours, slabs == 0 ? kMostSlabs : slabs);
+}
+
 }  // namespace
 
 SurfelOptions surfel_options(const FrameSettings& settings, const RaycastOptions& raycast) {
@@ -64,7 +85,7 @@ WaterSurface water_surface(const Particles& particles, const FrameSettings& sett
       water.surface = make_sphere_surface(particles, 0.5f * raycast.spacing, colours);
       break;
     case SurfaceMethod::raycast:
-      water.surface = make_raycast_surface(particles, raycast, colours, times, sizes.sizes());
+      water.surface = raycast_surface(particles, settings, raycast, colours, sizes.sizes(), times);
       break;
     case SurfaceMethod::surfels:
       water.surface = make_surfel_surface(particles, surfel_options(settings, raycast), colours, times);

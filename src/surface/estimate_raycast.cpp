@@ -7,9 +7,7 @@
 namespace meniscus {
 namespace {
 
-constexpr double kBand = 8;         ///< spacings: depth of the water under the surface whose particles are kept
 constexpr double kRoughness = 1.3;  ///< area of water with waves and splashes over that of a box
-constexpr double kCell = 2;         ///< spacings along a cell
 constexpr double kBytesKept = 36;   ///< a kept particle: position, index, mass, radius, and what is splatted
 constexpr double kBytesBuilt = 60;  ///< while it is sorted
 constexpr double kBytesACell = 13;
@@ -32,11 +30,17 @@ RaycastEstimate estimate_raycast(std::uint64_t count, const Bounds& bounds, cons
   const double spacing = options.spacing, n = static_cast<double>(count);
   if (!(spacing > 0 && spacing < 1e30))
     throw Error(ErrorCode::invalid_argument, "an estimate of a surface needs the particles' spacing, above 0 m");
+  // Cells are a smoothing length wide. Those are kept that sums at the surface reach, the one that the surface runs
+  // through, and another until all around are full.
+  const double cell = options.smoothing_length > 0 ? options.smoothing_length : 2 * spacing;
+  const double normals = options.normal_radius > 0 ? options.normal_radius : 3 * spacing;
+  const double band = options.cull_interior ? (std::ceil(std::max(cell, normals) / cell) + 2) * cell
+                                            : std::numeric_limits<double>::infinity();
   const double volume = n * spacing * spacing * spacing;
   const double area = bounds.empty() ? 0 : kRoughness * area_of(volume, bounds, spacing);
-  const double kept = std::min(n, kBand * area / (spacing * spacing));
+  const double kept = std::min(n, band * std::max(area, 1e-30) / (spacing * spacing * spacing));
   // A block has 8 cells along an edge, and those at the surface are full of air by half.
-  const double block = 8 * kCell * spacing;
+  const double block = 8 * cell;
   const double blocks = std::min(n, volume / std::pow(block, 3) + area / (block * block) + (count > 0 ? 1 : 0));
   const double cells = 512 * blocks;
   const auto bytes = [](double b) { return static_cast<std::uint64_t>(std::max(b, 0.0)); };

@@ -162,7 +162,7 @@ class SlabSurface final : public Surface {
     RaycastOptions options = options_;
     options.filter_radius = 0;  // the filter reaches over borders
     options.want_thickness = only_thickness;
-    if (only_thickness) options.want_normals = options.keep_thin = options.cull_interior = false;
+    if (only_thickness) options.want_normals = options.keep_thin = false;
     return make_raycast_surface(part, options, colours, times);
   }
 
