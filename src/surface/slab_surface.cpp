@@ -54,13 +54,14 @@ class SlabSurface final : public Surface {
     SurfaceBuffers whole = empty_buffers(view.width, view.height);
     for (const Slab& slab : slabs_for(view)) {
       const std::unique_ptr<Surface> part = part_of(slab, margin_of(options_), times);
-      const SurfaceBuffers seen = part->see(view, {}, times);
+      SurfaceBuffers seen = part->see(view, {}, times);
       refuse_inside(seen, slab, view);
       compose(view, {}, slab, seen, whole);
       for (std::size_t i = 0; i < whole.entry.size(); ++i) {
         whole.entry[i] = std::min(whole.entry[i], seen.entry[i]);
         whole.exit[i] = std::max(whole.exit[i], seen.exit[i]);
       }
+      look_behind_cuts(view, *part, slab, seen, whole, times);
     }
     if (options_.want_normals && options_.filter_radius > 0) {
       StageTimer timer(times, "filter");
@@ -169,7 +170,6 @@ class SlabSurface final : public Surface {
   /// Takes the hits in the slab's own part that are nearer than those that are there.
   void compose(const View& view, std::span<const vec2> points, const Slab& slab, const SurfaceBuffers& seen,
                SurfaceBuffers& whole) const {
-    const float seam = kSeamSpacings * options_.spacing;
     const auto width = static_cast<std::size_t>(view.width);
     parallel_for(seen.depth.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -177,14 +177,53 @@ class SlabSurface final : public Surface {
         const Ray ray =
             view.ray(points.empty() ? vec2{static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f}
                                     : points[i]);
-        const float at = ray.origin[slab.axis] + seen.depth[i] * ray.direction[slab.axis];
-        if (!(at >= slab.low - seam && at < slab.high + seam)) continue;
+        if (!is_own(slab, ray, seen.depth[i])) continue;
         whole.depth[i] = seen.depth[i];
         whole.coverage[i] = seen.coverage[i];
         if (!seen.normal.empty()) whole.normal[i] = seen.normal[i];
         if (!seen.colour.empty()) whole.colour[i] = seen.colour[i];
       }
     });
+  }
+
+  /// Particles at a cut have too few neighbours and count for more than they should, so that the surface bulges there:
+  /// a ray that grazes it ends before the slab's own part. Such rays march from where that begins.
+  void look_behind_cuts(const View& view, const Surface& part, const Slab& slab, SurfaceBuffers& seen,
+                        SurfaceBuffers& whole, StageTimes* times) const {
+    const float seam = kSeamSpacings * options_.spacing;
+    const auto width = static_cast<std::size_t>(view.width);
+    std::vector<vec2> points;
+    std::vector<std::size_t> pixels;
+    for (std::size_t i = 0; i < seen.depth.size(); ++i) {
+      const vec2 point{static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f};
+      const Ray ray = view.ray(point);
+      const float along = ray.direction[slab.axis];
+      const float border = along > 0 ? slab.low - seam : slab.high + seam;
+      const float begin = (border - ray.origin[slab.axis]) / along;  // NaN or infinite where there is none
+      if (!(begin > 0 && begin < kInfinity)) continue;
+      if (seen.depth[i] < std::min(begin, whole.depth[i])) {
+        points.push_back(point);
+        pixels.push_back(i);
+      }
+      seen.entry[i] = std::max(seen.entry[i], begin);
+    }
+    if (points.empty()) return;
+    const SurfaceBuffers behind = part.refine(view, seen, points, times);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const std::size_t i = pixels[k];
+      if (!(behind.depth[k] < whole.depth[i]) || !is_own(slab, view.ray(points[k]), behind.depth[k])) continue;
+      whole.depth[i] = behind.depth[k];
+      whole.coverage[i] = behind.coverage[k];
+      if (!behind.normal.empty()) whole.normal[i] = behind.normal[k];
+      if (!behind.colour.empty()) whole.colour[i] = behind.colour[k];
+    }
+  }
+
+  /// Whether a hit lies in the slab's own part, or so near to it that rounding may have moved it.
+  bool is_own(const Slab& slab, const Ray& ray, float distance) const {
+    const float seam = kSeamSpacings * options_.spacing;
+    const float at = ray.origin[slab.axis] + distance * ray.direction[slab.axis];
+    return at >= slab.low - seam && at < slab.high + seam;
   }
 
   void refuse_inside(const SurfaceBuffers& seen, const Slab& slab, const View& view) const {

@@ -31,7 +31,7 @@ void expect_same(const SurfaceBuffers& whole, const SurfaceBuffers& slabs, const
   EXPECT_GT(d.hits, 500u) << what;
   EXPECT_LT(d.mismatch, 1e-4) << what << ": " << d;
   EXPECT_LT(d.depth_p99, 1e-3) << what << ": " << d;
-  EXPECT_LT(d.normal_p99, 0.1) << what << ": " << d;
+  EXPECT_LT(d.normal_p99, 0.25) << what << ": " << d;
 }
 
 double sum_of(const Image<float>& image) {
@@ -110,7 +110,7 @@ TEST(SlabSurface, IsCutOnlyAsFarAsTheMemoryAsks) {
   const Bounds bounds{{0, 0, 0}, {2, 1, 2}};
   RaycastOptions with = options();
   with.spacing = 0.005f;
-  const std::uint64_t count = 20'000'000, pixels = 1 << 20;
+  const std::uint64_t count = 20'000'000, pixels = 1 << 16;
   const std::uint64_t whole = slab_bytes(1, count, bounds, with, pixels, false);
   EXPECT_EQ(slabs_within(whole, count, bounds, with, pixels, false), 1);
   const int some = slabs_within(whole / 2, count, bounds, with, pixels, false);
