@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "surface/density_tile.h"
-#include "surface/hidden_cells.h"
 #include "surface/masses.h"
 #include "surface/packet.h"
 
@@ -48,9 +47,8 @@ float place(float low, float step, int i) {
 }
 
 std::size_t bytes_of(const RaycastField& field) {
-  // x, y, z, mass, index, entry radius of each particle, and the table of cells
-  return field.grid.size() * 6 * sizeof(float) +
-         (field.grid.dense() ? field.grid.cell_count() * sizeof(std::uint32_t) + field.hidden.size() : 0);
+  // the grid; mass and entry radius of each particle
+  return field.grid.memory_bytes() + field.grid.size() * 2 * sizeof(float);
 }
 
 }  // namespace
@@ -65,10 +63,9 @@ RaycastField make_density_field(const Particles& particles, const DensityOptions
   as_raycast.keep_thin = options.keep_thin;
   RaycastField field = [&] {
     StageTimer timer(times, "sort");
-    return make_field(particles, as_raycast, colours);
+    return make_field(particles, as_raycast, colours, cull ? Keep::all_kinds : Keep::all);
   }();
   StageTimer timer(times, "masses");
-  if (cull) find_hidden_cells(field);
   if (options.keep_thin) find_masses(field);
   return field;
 }

@@ -27,7 +27,7 @@ double kernel_in_double(Kernel kernel, double r, double h) {
 
 /// One mass a particle by the rule of raycast_field.h, from plain sums over all pairs that are near.
 std::vector<double> masses(const RaycastField& field) {
-  const ParticleGrid& grid = field.grid;
+  const BandGrid& grid = field.grid;
   const RaycastOptions& options = field.options;
   std::vector<double> found(grid.size(), 1.0);
   if (!options.keep_thin) return found;

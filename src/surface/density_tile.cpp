@@ -118,7 +118,7 @@ HWY_INLINE void splat_ball(const DensityTile& tile, vec3 per_h, vec3 reach, floa
 
 template <class Kernel>
 void splat_balls(const RaycastField& field, const DensityTile& tile) {
-  const ParticleGrid& grid = field.grid;
+  const BandGrid& grid = field.grid;
   const float h = field.options.smoothing_length;
   const vec3 per_step = 1.0f / tile.step, per_h = tile.step / h;
   const vec3 last = vec3{tile.nx - 1, tile.ny - 1, tile.nz - 1};

@@ -1,4 +1,4 @@
-/// Which cells' particles no ray can meet first, and what makes leaving them out safe.
+/// What a ray has to enter before it can meet the surface, and what makes leaving particles out safe.
 #pragma once
 
 #include "surface/raycast_field.h"
@@ -10,11 +10,8 @@ struct SphereSet {
   std::vector<float> x, y, z, radius;
   std::size_t size() const { return x.size(); }
   void add(vec3 centre, float r);
+  void add(const SphereSet& others);
 };
-
-/// Marks the cells that are well filled, as are all 26 around them, in field.hidden (dense grids only; it stays
-/// empty where nothing is hidden).
-void find_hidden_cells(RaycastField& field);
 
 /// The spheres that a ray has to enter before it can meet the surface: those of all particles that are not in the
 /// midst of hidden cells, and one around each hidden cell that touches one that is not hidden. A ray that slips

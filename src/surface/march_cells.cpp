@@ -16,7 +16,7 @@ constexpr float kWellInside = 0.5f;
 }  // namespace
 
 MarchCells::MarchCells(const RaycastField& field) {
-  const ParticleGrid& grid = field.grid;
+  const BandGrid& grid = field.grid;
   if (grid.size() == 0) return;
   const Bounds box = grid.bounds().grown(field.options.smoothing_length + 0.01f * field.options.spacing);
   low_ = box.low;
@@ -40,7 +40,7 @@ MarchCells::MarchCells(const RaycastField& field) {
 }
 
 void MarchCells::mark_reached(const RaycastField& field) {
-  const ParticleGrid& grid = field.grid;
+  const BandGrid& grid = field.grid;
   const float reach = field.options.smoothing_length;  // no entry sphere is larger
   const auto cell = [&](float value, int axis) {
     return std::clamp(static_cast<int>((value - low_[axis]) * per_size_), 0, n_[axis] - 1);
@@ -57,9 +57,17 @@ void MarchCells::mark_reached(const RaycastField& field) {
                       static_cast<std::uint8_t>(unknown));
     }
   };
-  if (!grid.dense()) {  // the grid has more rows than can be looked through
-    mark(0, grid.size(), 0, n_[2] - 1);
-    return;
+  for (int block = 0; block < grid.blocks(); ++block) {  // the cells whose particles are left out
+    if (grid.all_open(block)) continue;
+    for (int i = 0; i < BandGrid::kCells; ++i) {
+      if (grid.kinds(block)[i] != BandGrid::deep) continue;
+      const vec3 low = grid.low(block) + grid.cell_size() * vec3(i % 8, i / 8 % 8, i / 64),
+                 high = low + grid.cell_size();
+      for (int z = cell(low.z, 2); z <= cell(high.z, 2); ++z)
+        for (int y = cell(low.y, 1); y <= cell(high.y, 1); ++y)
+          for (int x = cell(low.x, 0); x <= cell(high.x, 0); ++x)
+            kind_[index(x, y, z)] = static_cast<std::uint8_t>(unknown);
+    }
   }
   parallel_for(static_cast<std::size_t>((n_[2] + kLayers - 1) / kLayers), 1, [&](std::size_t piece, std::size_t) {
     const int first = static_cast<int>(piece) * kLayers, last = std::min(first + kLayers, n_[2]) - 1;

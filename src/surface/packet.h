@@ -32,6 +32,8 @@ struct PacketList {
   AlignedFloats x, y, z, mass, red, green, blue;
   AlignedFloats per_smoothing, per_normal_radius;  ///< as long as the others if field.has_sizes(), else not used
   std::size_t count = 0;
+  /// Whether BandGrid::full_at() may hold where the list is summed: the density is one there, whatever the sum says.
+  bool near_full = false;
   void reserve(std::size_t wanted, bool colours);
 };
 

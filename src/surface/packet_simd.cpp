@@ -45,7 +45,7 @@ class March {
       gather_around(
           group, [&](int l) { return std::max(at_[l] - 2.0f * field_.step, entry_[l]); },
           [&](int l) { return std::min(last, exit_[l]); });
-      if (list_.count == 0 && sign_ > 0)
+      if (list_.count == 0 && sign_ > 0 && !list_.near_full)
         skip(group, last);
       else
         walk(group, last, depth);

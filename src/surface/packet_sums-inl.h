@@ -33,7 +33,7 @@ HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, fl
                               PacketList& list) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
-  const ParticleGrid& grid = field.grid;
+  const BandGrid& grid = field.grid;
   const Vec low_x = hn::Set(d, low.x), low_y = hn::Set(d, low.y), low_z = hn::Set(d, low.z);
   const Vec high_x = hn::Set(d, high.x), high_y = hn::Set(d, high.y), high_z = hn::Set(d, high.z);
   const Vec radius2 = hn::Set(d, radius * radius), zero = hn::Zero(d);
@@ -41,6 +41,7 @@ HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, fl
     return hn::Max(hn::Max(hn::Sub(from, v), hn::Sub(v, to)), zero);
   };
   list.count = 0;
+  list.near_full = grid.touches_full(low, high);
   grid.for_each_run(low - radius, high + radius, [&](std::size_t begin, std::size_t end) {
     list.reserve(list.count + (end - begin) + 2 * kPacket, colours);
     for (std::size_t i = begin; i < end; i += lanes) {
@@ -94,6 +95,17 @@ struct WyvillShape {
   }
 };
 
+/// Sets rho to one at those of a vector of points that lie where particles in the midst of the water are left out.
+HWY_NOINLINE void fill_where_full(const BandGrid& grid, Vec px, Vec py, Vec pz, float* rho) {
+  const Tag d;
+  alignas(64) float x[kPacket], y[kPacket], z[kPacket];
+  hn::Store(px, d, x);
+  hn::Store(py, d, y);
+  hn::Store(pz, d, z);
+  for (std::size_t l = 0; l < hn::Lanes(d); ++l)
+    if (grid.full_at({x[l], y[l], z[l]})) rho[l] = 1.0f;
+}
+
 /// rho at sixteen points; position(l) gives three vectors from lane l on.
 template <class Shape, class Position>
 HWY_INLINE void sum_density(const RaycastField& field, const PacketList& list, Position position, float* rho) {
@@ -112,6 +124,7 @@ HWY_INLINE void sum_density(const RaycastField& field, const PacketList& list, P
       sum = hn::MulAdd(Shape::at(r2, per_h), hn::Set(d, lm[j]), sum);
     }
     hn::Store(hn::Mul(sum, hn::Set(d, field.scale)), d, rho + l);
+    if (HWY_UNLIKELY(list.near_full)) fill_where_full(field.grid, px, py, pz, rho + l);
   }
 }
 

@@ -35,10 +35,9 @@ class RaycastSurface final : public Surface {
                  StageTimes* times)
       : field_([&] {
           StageTimer timer(times, "sort");
-          return make_field(particles, options, colours);
+          return make_field(particles, options, colours, Keep::band);
         }()) {
     StageTimer timer(times, "masses");
-    if (field_.options.cull_interior) find_hidden_cells(field_);
     if (field_.options.keep_thin) find_masses(field_);
     spheres_ = entry_spheres(field_);
   }
@@ -129,12 +128,9 @@ class RaycastSurface final : public Surface {
   /// Rays that start amidst hidden cells, in a bubble or on a plane through the water, are inside of no sphere that
   /// was splatted: they march from their start.
   void start_where_hidden(const View& view, SurfaceBuffers& buffers) const {
-    const ParticleGrid& grid = field_.grid;
-    const auto is_hidden = [&](vec3 at) {
-      const ParticleGrid::CellBox box = grid.cells(at, at);
-      return !box.empty() && field_.is_hidden(grid.cell_index(box.x0, box.y0, box.z0));
-    };
-    if (field_.hidden.empty()) return;
+    const BandGrid& grid = field_.grid;
+    const auto is_hidden = [&](vec3 at) { return grid.kind_at(at) != BandGrid::open; };
+    if (!grid.has_hidden()) return;
     const bool perspective = view.projection == Projection::perspective;
     const vec3 half = 0.5f * grid.bounds().extent(), forward = glm::abs(view.forward);
     if (perspective ? !is_hidden(view.eye)

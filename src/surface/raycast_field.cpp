@@ -7,6 +7,9 @@
 namespace meniscus {
 namespace {
 
+/// Of the particles that a cell inside the water holds, the share that counts as well filled.
+constexpr float kWellFilled = 0.4f;
+
 void require(bool holds, std::string_view name, double value, std::string_view range) {
   if (!holds)
     throw Error(
@@ -93,23 +96,43 @@ MassRule mass_rule(const RaycastOptions& options) {
   return rule;
 }
 
-RaycastField make_field(const Particles& particles, const RaycastOptions& given, std::span<const vec3> colours) {
+namespace {
+
+BandGrid::Options grid_options(const RaycastOptions& options, Keep keep) {
+  const float cell = options.smoothing_length;
+  BandGrid::Options wanted;
+  wanted.cell_size = cell;
+  if (keep == Keep::all || (keep == Keep::band && !options.cull_interior)) return wanted;
+  const float inside = cell * cell * cell / (options.spacing * options.spacing * options.spacing);
+  wanted.well_filled = std::max(static_cast<std::uint32_t>(kWellFilled * inside), 1u);
+  // Marches reach a smoothing length, normals their radius into the water.
+  const float reach = std::max(options.smoothing_length, options.normal_radius);
+  wanted.kept_layers = keep == Keep::band ? static_cast<int>(std::ceil(reach / cell)) : 1 << 20;
+  return wanted;
+}
+
+}  // namespace
+
+RaycastField make_field(const Particles& particles, const RaycastOptions& given, std::span<const vec3> colours,
+                        Keep keep) {
   const RaycastOptions options = resolved(given);
   if (!colours.empty() && colours.size() != particles.size())
     throw Error(ErrorCode::invalid_argument,
                 fmt::format("{} colours were given for {} particles", colours.size(), particles.size()));
-  RaycastField field{options, ParticleGrid(particles, options.smoothing_length), {}, {}, {}, {}, {}, {}, 0, 0, {}, {}, {}};
+  RaycastField field;
+  field.options = options;
+  field.grid = BandGrid(particles, grid_options(options, keep));
   const float volume = options.spacing * options.spacing * options.spacing;
   field.scale = volume * kernel_value(options.kernel, 0.0f, options.smoothing_length);
   field.step = options.step * options.smoothing_length;
   const std::size_t count = field.grid.size();
-  field.mass.assign(count + ParticleGrid::kPadding, 1.0f);
+  field.mass.assign(count + BandGrid::kPadding, 1.0f);
   std::fill(field.mass.begin() + static_cast<std::ptrdiff_t>(count), field.mass.end(), 0.0f);
   field.entry_radius.assign(count, entry_radius_at(options, 1.0f));
   if (!colours.empty()) {
-    field.red.resize(count + ParticleGrid::kPadding, 0.0f);
-    field.green.resize(count + ParticleGrid::kPadding, 0.0f);
-    field.blue.resize(count + ParticleGrid::kPadding, 0.0f);
+    field.red.resize(count + BandGrid::kPadding, 0.0f);
+    field.green.resize(count + BandGrid::kPadding, 0.0f);
+    field.blue.resize(count + BandGrid::kPadding, 0.0f);
     for (std::size_t i = 0; i < count; ++i) {
       const vec3 colour = colours[field.grid.given_index(i)];
       field.red[i] = colour.x;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "meniscus/surface.h"
-#include "particles/grid.h"
+#include "particles/band_grid.h"
 
 namespace meniscus {
 
@@ -15,12 +15,11 @@ namespace meniscus {
 /// field in `coarser` those of up to twice the ones before, sorted by cells of their own. Sums run over all levels;
 /// options, scale and step of a coarser level are those that its largest particle has.
 struct RaycastField {
-  RaycastOptions options;  ///< checked, every length resolved
-  ParticleGrid grid;
+  RaycastOptions options;               ///< checked, every length resolved
+  BandGrid grid;                        ///< cells of one smoothing length
   std::vector<float> mass;              ///< m_j by sorted index, padded like the grid's arrays
   std::vector<float> entry_radius;      ///< m by sorted index: the sphere outside of which j makes no surface
   std::vector<float> red, green, blue;  ///< linear, by sorted index, padded; empty without colours
-  std::vector<std::uint8_t> hidden;     ///< by cell: no ray sees its particles before others; may be empty
   float scale = 0;                      ///< spacing^3 W(0, h): what a unit mass adds to rho at its own place
   float step = 0;                       ///< m, of the march
   /// Of particles with sizes of their own, by sorted index, padded: options.spacing / s_j (which is also R / R_j of the
@@ -30,12 +29,19 @@ struct RaycastField {
 
   bool has_colours() const { return !red.empty(); }
   bool has_sizes() const { return !per_spacing.empty(); }
-  bool is_hidden(std::size_t cell) const { return !hidden.empty() && hidden[cell] != 0; }
+};
+
+/// Which particles a field keeps, and what its grid knows of its cells.
+enum class Keep {
+  all,        ///< all cells are open
+  all_kinds,  ///< all; cells in the midst of the water are hidden
+  band        ///< those of deep cells are left out, if options.cull_interior
 };
 
 /// Checks the options, sorts the particles and their colours; masses are one.
 /// @throws Error invalid_argument
-RaycastField make_field(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours);
+RaycastField make_field(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours,
+                        Keep keep = Keep::all);
 
 /// W(r, h) of the field's kernel, 1/m^3.
 float kernel_value(Kernel kernel, float r, float h);

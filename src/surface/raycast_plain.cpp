@@ -190,7 +190,7 @@ class PlainRaycastSurface final : public Surface {
   /// Calls visit(particle, distance) for all within `radius` of the point.
   template <class Visit>
   void for_each_neighbour(vec3 point, float radius, Visit visit) const {
-    const ParticleGrid& grid = field_.grid;
+    const BandGrid& grid = field_.grid;
     grid.for_each_run(point - radius, point + radius, [&](std::size_t begin, std::size_t end) {
       for (std::size_t j = begin; j < end; ++j) {
         const vec3 off = grid.position(j) - point;

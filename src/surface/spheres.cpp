@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "meniscus/surface.h"
-#include "particles/grid.h"
+#include "particles/band_grid.h"
 #include "surface/spheres_crossings.h"
 #include "surface/splat.h"
 
@@ -19,7 +19,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 class SphereSurface final : public Surface {
  public:
   SphereSurface(const Particles& particles, float radius, std::span<const vec3> colours)
-      : grid_(particles, 2.0f * radius), radius_(radius) {
+      : grid_(particles, {2.0f * radius, 0, 0}), radius_(radius) {
     if (!colours.empty() && colours.size() != particles.size())
       throw Error(ErrorCode::invalid_argument,
                   fmt::format("{} colours were given for {} particles", colours.size(), particles.size()));
@@ -142,7 +142,7 @@ class SphereSurface final : public Surface {
     });
   }
 
-  ParticleGrid grid_;
+  BandGrid grid_;
   float radius_;
   std::vector<vec3> colours_;
   mutable std::once_flag cells_made_;

@@ -17,7 +17,7 @@ struct Stretch {
 
 class BallRay {
  public:
-  BallRay(const ParticleGrid& grid, float radius, const MarchCells& cells, const Ray& ray)
+  BallRay(const BandGrid& grid, float radius, const MarchCells& cells, const Ray& ray)
       : grid_(grid),
         radius_(radius),
         cells_(cells),
@@ -53,7 +53,7 @@ class BallRay {
 
  private:
   /// A ray that begins far away is taken to begin beside the middle of the balls, where its places can be told apart.
-  static float shift_of(const ParticleGrid& grid, const Ray& ray) {
+  static float shift_of(const BandGrid& grid, const Ray& ray) {
     if (grid.size() == 0) return 0.0f;
     const float to_middle = glm::dot(grid.bounds().centre() - ray.origin, ray.direction);
     return std::abs(to_middle) > glm::length(grid.bounds().extent()) ? to_middle : 0.0f;
@@ -116,7 +116,7 @@ class BallRay {
     }
   }
 
-  const ParticleGrid& grid_;
+  const BandGrid& grid_;
   float radius_;
   const MarchCells& cells_;
   float shift_;  ///< m, from the given ray's beginning
@@ -125,17 +125,20 @@ class BallRay {
 
 }  // namespace
 
-MarchCells ball_cells(const ParticleGrid& grid, float radius) {
+MarchCells ball_cells(const BandGrid& grid, float radius) {
   RaycastOptions options;
   options.spacing = 2.0f * radius;
   options.smoothing_length = 2.0f * radius;
   // Without masses no cell is inside.
-  const std::vector<float> none(grid.size() + ParticleGrid::kPadding, 0.0f);
-  const RaycastField field{options, grid, none, std::vector<float>(grid.size(), radius), {}, {}, {}, {}, 0, 0};
+  RaycastField field;
+  field.options = options;
+  field.grid = grid;
+  field.mass.assign(grid.size() + BandGrid::kPadding, 0.0f);
+  field.entry_radius.assign(grid.size(), radius);
   return MarchCells(field);
 }
 
-void ball_crossings(const ParticleGrid& grid, float radius, const MarchCells& cells, std::span<const Ray> rays,
+void ball_crossings(const BandGrid& grid, float radius, const MarchCells& cells, std::span<const Ray> rays,
                     std::span<const float> from, std::span<const float> limit, std::span<const std::uint8_t> inside,
                     std::span<Crossing> found) {
   if (from.size() != rays.size() || limit.size() != rays.size() || inside.size() != rays.size() ||

@@ -25,7 +25,7 @@ struct Blocks {
 /// that flew far away cost what they weigh.
 Blocks blocks_near(const RaycastField& field, const SurfelGrid& grid) {
   Blocks blocks;
-  const ParticleGrid& particles = field.grid;
+  const BandGrid& particles = field.grid;
   const float h = field.options.smoothing_length + grid.step;
   const vec3 size = grid.step * vec3{kBlockX, kBlockY, kBlockZ};
   const vec3 far = (particles.bounds().high + h - grid.low) / size;

@@ -21,7 +21,7 @@ float between(const Image<float>& coarse, int stride, float x, float y) {
 
 }  // namespace
 
-Image<float> splatted_thickness(const ParticleGrid& grid, float spacing, const View& view,
+Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view,
                                 std::span<const vec2> points) {
   const float radius = 1.25f * spacing;  // thickness_radius() of raycast_field.h
   const float weight = spacing * spacing * spacing / (4.0f / 3.0f * 3.14159265f * radius * radius * radius);
@@ -29,8 +29,22 @@ Image<float> splatted_thickness(const ParticleGrid& grid, float spacing, const V
   const float middle = std::max(glm::dot(grid.bounds().centre() - view.eye, view.forward), spacing);
   const float spacing_px = spacing / view.pixel_size(middle);
   const int stride = grid.size() == 0 ? 1 : std::clamp(static_cast<int>(spacing_px / 1.4f), 1, 8);
-  const Image<float> coarse = splat_chords(
-      view, {{grid.x(), grid.size()}, {grid.y(), grid.size()}, {grid.z(), grid.size()}, {&radius, 1}}, weight, stride);
+  // Particles of deep cells are known by their number only: spread them over the cell.
+  std::vector<float> x(grid.x(), grid.x() + grid.size()), y(grid.y(), grid.y() + grid.size()),
+      z(grid.z(), grid.z() + grid.size());
+  for (int block = 0; block < grid.blocks() && grid.has_deep(); ++block)
+    for (int cell = 0; cell < BandGrid::kCells; ++cell) {
+      if (grid.kinds(block)[cell] != BandGrid::deep) continue;
+      for (std::uint32_t k = 0; k < grid.counts(block)[cell]; ++k) {
+        const vec3 in_cell =
+            vec3(cell % 8, cell / 8 % 8, cell / 64) + 0.25f + 0.5f * vec3(k & 1, k >> 1 & 1, k >> 2 & 1);
+        const vec3 at = grid.low(block) + grid.cell_size() * in_cell;
+        x.push_back(at.x);
+        y.push_back(at.y);
+        z.push_back(at.z);
+      }
+    }
+  const Image<float> coarse = splat_chords(view, {x, y, z, {&radius, 1}}, weight, stride);
   const Image<float> smooth =
       smoothed_thickness(coarse, std::min(spacing_px / static_cast<float>(stride), 4.0f), spacing);
   if (!points.empty()) {

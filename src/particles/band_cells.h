@@ -1,0 +1,30 @@
+/// The passes over all particles that a BandGrid is made by; vectorised.
+#pragma once
+
+#include "meniscus/base.h"
+
+namespace meniscus {
+
+/// Particles that are looked at together: 256 that follow each other in the given order.
+constexpr std::size_t kBandPiece = 256;
+
+/// Boxes of pieces of particles, m. The last one may hold fewer than 256.
+/// @param boxes  (count + 255) / 256 of them
+void find_piece_boxes(const float* x, const float* y, const float* z, std::size_t count, Bounds* boxes);
+
+/// Cells from the low corner of the grid.
+struct BandCells {
+  vec3 low{0.0f};      ///< m
+  float per_cell = 0;  ///< 1/m
+  int blocks_x = 0, blocks_y = 0;
+};
+
+/// Keys of at most 256 particles: 512 block + cell of the block, with the block's place in a dense table of fewer than
+/// 2^22 blocks, x fastest.
+void find_dense_keys(const BandCells& cells, const float* x, const float* y, const float* z, std::size_t count,
+                     std::uint32_t* keys);
+
+/// Cell coordinates of at most 256 values along one axis.
+void find_cell_coordinates(float low, float per_cell, const float* values, std::size_t count, std::int32_t* cells);
+
+}  // namespace meniscus

@@ -1,0 +1,122 @@
+/// How many particles each cell holds, counted by parts of the input.
+#pragma once
+
+#include <bit>
+#include <memory>
+
+#include "particles/band_cells.h"
+
+namespace meniscus {
+
+/// Counters by cell of the particles begin .. end of the given order. Blocks get counters when their first particle
+/// comes: a page of 512, found by a dense table of blocks; or, where blocks are found by hashing, room for a few cells
+/// first, and a page when that is full, so that lone particles take little.
+///
+/// The counters serve twice: when all have been counted, they are set to where the particles of this part go, which
+/// next() then gives out.
+class BandPart {
+ public:
+  using Counter = std::uint32_t;
+  static constexpr std::size_t kCells = 512;
+
+  /// @param dense_blocks  places in the dense table; 0: by hashing
+  BandPart(const BandCells& cells, std::size_t dense_blocks, std::size_t begin, std::size_t end)
+      : cells_(cells), begin_(begin), end_(end), dense_(dense_blocks > 0), table_(dense_blocks, nullptr) {}
+
+  std::size_t begin() const { return begin_; }
+  std::size_t end() const { return end_; }
+
+  void count(const Particles& particles);
+
+  /// Appends the keys of the blocks that have counters: place in the dense table, or hash key; in no order.
+  void add_blocks(std::vector<std::uint64_t>& keys) const;
+  bool holds(std::size_t dense_block) const { return table_[dense_block] != nullptr; }
+
+  /// Calls visit(cell, counter) for the cells of a block that may hold particles.
+  template <class Visit>
+  void for_each(std::uint64_t block, Visit visit) {
+    Counter* page = nullptr;
+    if (dense_) {
+      page = table_[block];
+    } else {
+      const std::int32_t found = find(block);
+      if (found < 0) return;
+      Entry& entry = entries_[static_cast<std::size_t>(found)];
+      page = entry.page;
+      if (!page)
+        for (std::size_t i = 0; i < entry.cells; ++i) visit(entry.cell[i], entry.counter[i]);
+    }
+    if (page)
+      for (std::size_t cell = 0; cell < kCells; ++cell) visit(cell, page[cell]);
+  }
+
+  /// Calls visit(i, counter) for the particles from .. to of this part, at most 256.
+  template <class Visit>
+  void for_each_particle(const Particles& particles, std::size_t from, std::size_t to, Visit visit) {
+    if (dense_) {
+      std::uint32_t keys[kBandPiece];
+      find_dense_keys(cells_, &particles.x[from], &particles.y[from], &particles.z[from], to - from, keys);
+      for (std::size_t i = from; i < to; ++i) visit(i, table_[keys[i - from] >> 9][keys[i - from] & 511u]);
+    } else {
+      for_each_hashed(particles, from, to,
+                      [&](std::size_t i, Entry& entry, std::uint32_t cell) { visit(i, counter_of(entry, cell)); });
+    }
+  }
+
+  /// Key of the block at block coordinates below 2^21, for parts with hashing: rises by z, then y, then x.
+  static std::uint64_t key_of(std::uint64_t bx, std::uint64_t by, std::uint64_t bz) { return bz << 42 | by << 21 | bx; }
+  static std::size_t hash_of(std::uint64_t key) {
+    key *= 0x9e3779b97f4a7c15u;
+    return static_cast<std::size_t>(key ^ key >> 32);
+  }
+
+ private:
+  static constexpr std::size_t kFew = 6;
+  static constexpr std::size_t kPagesAtOnce = 32;
+  struct Entry {
+    std::uint64_t key = 0;
+    Counter* page = nullptr;
+    std::uint16_t cells = 0;
+    std::uint16_t cell[kFew] = {};
+    Counter counter[kFew] = {};
+  };
+
+  Counter* new_page() {
+    if (pages_used_ == kPagesAtOnce * pages_.size())
+      pages_.push_back(std::make_unique<Counter[]>(kPagesAtOnce * kCells));
+    return &pages_.back()[pages_used_++ % kPagesAtOnce * kCells];
+  }
+  std::int32_t find(std::uint64_t key) const;
+  std::int32_t find_or_add(std::uint64_t key);
+  Counter& counter_of(Entry& entry, std::uint32_t cell);
+  template <class Visit>
+  void for_each_hashed(const Particles& particles, std::size_t from, std::size_t to, Visit visit) {
+    std::int32_t cx[kBandPiece], cy[kBandPiece], cz[kBandPiece];
+    find_cell_coordinates(cells_.low.x, cells_.per_cell, &particles.x[from], to - from, cx);
+    find_cell_coordinates(cells_.low.y, cells_.per_cell, &particles.y[from], to - from, cy);
+    find_cell_coordinates(cells_.low.z, cells_.per_cell, &particles.z[from], to - from, cz);
+    std::uint64_t last_key = ~std::uint64_t{0};
+    std::size_t last = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const auto x = static_cast<std::uint32_t>(cx[i - from]), y = static_cast<std::uint32_t>(cy[i - from]),
+                 z = static_cast<std::uint32_t>(cz[i - from]);
+      const std::uint64_t key = key_of(x >> 3, y >> 3, z >> 3);
+      if (key != last_key) {
+        last = static_cast<std::size_t>(find_or_add(key));
+        last_key = key;
+      }
+      visit(i, entries_[last], (z & 7) << 6 | (y & 7) << 3 | (x & 7));
+    }
+  }
+
+  BandCells cells_;
+  std::size_t begin_, end_;
+  bool dense_;
+  std::vector<Counter*> table_;  ///< by place in the dense table
+  std::vector<std::unique_ptr<Counter[]>> pages_;
+  std::size_t pages_used_ = 0;
+  std::vector<std::int32_t> hashed_;  ///< entry or -1, by hash; a power of two, at most half full
+  std::vector<Entry> entries_;
+};
+
+}  // namespace meniscus
