@@ -218,15 +218,15 @@ class Meeting {
       };
       met = hn::AndNot(hn::And(hn::And(in(tank.side(), 0), in(tank.other(), 0)), in(tank.up(), tank.overlap())), met);
     }
-    Vec left = smooth(hn::Div(down, all(kHorizonHaze)));
+    Vec left = smooth(hn::Mul(down, all(1.0f / kHorizonHaze)));
     if (g.fade_radius > 0) {
       const Vec off_x = hn::Sub(x, all(g.centre.x)), off_y = hn::Sub(y, all(g.centre.y)),
                 off_z = hn::Sub(z, all(g.centre.z));
       const Vec height = dot(off_x, off_y, off_z, g.up);
       const Vec square = hn::Add(hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y)), hn::Mul(off_z, off_z));
       const Vec from_centre = hn::Sqrt(hn::Max(hn::Sub(square, hn::Mul(height, height)), zero));
-      const Vec part = hn::Sub(hn::Div(from_centre, all(g.fade_radius)), all(0.15f));
-      left = hn::Mul(left, hn::Sub(one, smooth(hn::Div(part, all(0.85f)))));
+      const Vec part = hn::MulSub(from_centre, all(1.0f / g.fade_radius), all(0.15f));
+      left = hn::Mul(left, hn::Sub(one, smooth(hn::Mul(part, all(1.0f / 0.85f)))));
     }
     met = hn::And(met, hn::Gt(left, zero));
     if (hn::AllFalse(d, met)) return;

@@ -29,10 +29,8 @@ HWY_INLINE Vec mixed(float a, float b, Vec t) {
 
 /// See footprint().
 HWY_INLINE Vec footprint_of(Vec width, Vec cos_in, Vec along) {
-  const Vec square = hn::Mul(cos_in, cos_in), one = all(1.0f);
-  const Vec stretch = hn::Sub(hn::Div(one, square), one);
-  const Vec sin_squared = hn::Max(all(1e-12f), hn::Sub(one, square));
-  return hn::Mul(width, hn::Sqrt(hn::Add(one, hn::Div(hn::Mul(stretch, hn::Mul(along, along)), sin_squared))));
+  const Vec slope = hn::Div(along, cos_in);
+  return hn::Mul(width, hn::Sqrt(hn::MulAdd(slope, slope, all(1.0f))));
 }
 
 /// See modulo_two(): half of it.

@@ -61,7 +61,8 @@ class Piece {
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = begin_ + k;
       const float depth = water_.depth[i], coverage = water_.coverage[i];
-      const bool wet = coverage > 0 && depth >= 0 && depth < kInfinity;
+      // Without branches: outlines cannot be foreseen.
+      const bool wet = (coverage > 0) & (depth >= 0) & (depth < kInfinity);
       work_.coverage[k] = wet ? std::min(coverage, 1.0f) : 0.0f;
       work_.pixels[found] = i;
       found += wet ? 1 : 0;
@@ -129,9 +130,15 @@ class Piece {
   void load() {
     WaterBlock& block = work_.block;
     const int count = block.count, padded = (count + 15) / 16 * 16;
-    for (int lane = 0; lane < count; ++lane) {
-      block.depth[lane] = water_.depth[block.indices[lane]];
-      block.thickness[lane] = water_.thickness[block.indices[lane]];
+    const std::size_t first = block.indices[0];
+    if (block.indices[count - 1] - first == static_cast<std::size_t>(count) - 1) {
+      std::copy_n(water_.depth.data() + first, count, block.depth);
+      std::copy_n(water_.thickness.data() + first, count, block.thickness);
+    } else {
+      for (int lane = 0; lane < count; ++lane) {
+        block.depth[lane] = water_.depth[block.indices[lane]];
+        block.thickness[lane] = water_.thickness[block.indices[lane]];
+      }
     }
     for (int lane = 0; lane < count;) {
       const std::size_t loaded =
@@ -170,8 +177,10 @@ class Piece {
       for (int lane = 0; lane < block.count; ++lane) distance[lane] = inputs_.behind->depth[block.indices[lane]];
     else
       scene_.block_distances(block.rays, distance);
+    int hidden = 0;
+    for (int lane = 0; lane < block.count; ++lane) hidden |= static_cast<int>(distance[lane] < block.depth[lane]);
     int left = block.count;
-    for (int lane = 0; lane < block.count; ++lane) {
+    for (int lane = 0; hidden != 0 && lane < block.count; ++lane) {
       if (!(distance[lane] < block.depth[lane])) continue;
       work_.coverage[block.indices[lane] - begin_] = 0.0f;
       --left;
@@ -207,7 +216,7 @@ class Piece {
     if (mirrors) scene_.block_radiance(block.mirror, block.mirror_beams, work_.image);
     put_together(optics_, block, work_.sky, material.transparent ? &work_.behind : nullptr,
                  on_floor ? &work_.floor : nullptr, mirrors ? &work_.image : nullptr, work_.seen);
-    for (int lane = 0; lane < block.count; ++lane) picture_[block.indices[lane]] = work_.seen.get(lane);
+    store_pixels(block.indices, block.count, work_.seen, picture_);
   }
 
   void pad(float* values) const {
@@ -231,9 +240,9 @@ class Piece {
     for (int lane = 0; lane < block.count; ++lane) {
       const std::size_t i = block.indices[lane];
       const float coverage = work_.coverage[i - begin_];
-      const vec3 behind = work_.behind.get(lane);
-      picture_[i] = coverage > 0 ? glm::mix(behind, picture_[i], coverage) : behind;
+      if (coverage > 0) work_.behind.set(lane, glm::mix(work_.behind.get(lane), picture_[i], coverage));
     }
+    store_pixels(block.indices, block.count, work_.behind, picture_);
   }
 
   void add_sun_disc() {
@@ -241,15 +250,17 @@ class Piece {
     const RayBlock& rays = work_.block.rays;
     // Half the squared chord to the sun, as in Environment::sun_glare().
     const float reach = 31.0f * (Environment::kSunVariance + inputs_.beam.spread * inputs_.beam.spread);
+    float half_square[kLanes];
+    int any = 0;
     for (int lane = 0; lane < rays.count; ++lane) {
-      float square = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float chord = rays.direction[axis][lane] - optics_.sun[axis];
-        square += chord * chord;
-      }
-      if (0.5f * square > reach || work_.distance[lane] < kInfinity) continue;
-      work_.behind.set(lane, work_.behind.get(lane) + sun_disc(rays.ray(lane), inputs_.beam, scene_));
+      const float x = rays.direction[0][lane] - optics_.sun.x, y = rays.direction[1][lane] - optics_.sun.y,
+                  z = rays.direction[2][lane] - optics_.sun.z;
+      half_square[lane] = 0.5f * (x * x + y * y + z * z);
+      any |= static_cast<int>(half_square[lane] < reach);
     }
+    for (int lane = 0; any != 0 && lane < rays.count; ++lane)
+      if (half_square[lane] < reach && !(work_.distance[lane] < kInfinity))
+        work_.behind.set(lane, work_.behind.get(lane) + sun_disc(rays.ray(lane), inputs_.beam, scene_));
   }
 
   const ShadeInputs& inputs_;

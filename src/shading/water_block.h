@@ -67,4 +67,7 @@ void go_on(const BlockOptics& optics, const float* to_ground, WaterBlock& block)
 void put_together(const BlockOptics& optics, const WaterBlock& block, const BlockVectors& sky,
                   const BlockVectors* behind, const BlockVectors* floor, const BlockVectors* image, BlockVectors& seen);
 
+/// Writes pixels of a picture. @param indices  of `count` pixels, increasing
+void store_pixels(const std::size_t* indices, int count, const BlockVectors& colours, vec3* picture);
+
 }  // namespace meniscus

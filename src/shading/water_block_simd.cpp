@@ -291,6 +291,20 @@ void PutTogether(const BlockOptics& optics, const WaterBlock& block, const Block
   }
 }
 
+void StorePixels(const std::size_t* indices, int count, const BlockVectors& colours, vec3* picture) {
+  const Tag d;
+  const auto lanes = hn::Lanes(d), end = static_cast<std::size_t>(count);
+  for (std::size_t i = 0; i < end; i += lanes) {
+    if (i + lanes <= end && indices[i + lanes - 1] - indices[i] == lanes - 1) {
+      const Triple colour = load(colours, i);
+      hn::StoreInterleaved3(colour.x, colour.y, colour.z, d, &picture[indices[i]].x);
+    } else {
+      for (std::size_t lane = i; lane < std::min(i + lanes, end); ++lane)
+        picture[indices[lane]] = colours.get(static_cast<int>(lane));
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace meniscus
 HWY_AFTER_NAMESPACE();
@@ -303,6 +317,7 @@ HWY_EXPORT(Bend);
 HWY_EXPORT(Lean);
 HWY_EXPORT(GoOn);
 HWY_EXPORT(PutTogether);
+HWY_EXPORT(StorePixels);
 
 std::size_t load_normals(const Image<vec3>& normals, std::size_t lane, WaterBlock& block) {
   return HWY_DYNAMIC_DISPATCH(LoadNormals)(normals, lane, block);
@@ -322,6 +337,10 @@ void put_together(const BlockOptics& optics, const WaterBlock& block, const Bloc
                   const BlockVectors* behind, const BlockVectors* floor, const BlockVectors* image,
                   BlockVectors& seen) {
   HWY_DYNAMIC_DISPATCH(PutTogether)(optics, block, sky, behind, floor, image, seen);
+}
+
+void store_pixels(const std::size_t* indices, int count, const BlockVectors& colours, vec3* picture) {
+  HWY_DYNAMIC_DISPATCH(StorePixels)(indices, count, colours, picture);
 }
 
 }  // namespace meniscus
