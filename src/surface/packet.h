@@ -60,6 +60,12 @@ using PacketMask = std::uint32_t;  ///< bit l: lane l
 void march_packet(const RaycastField& field, const PacketRays& rays, PacketMask mask, const float* entry,
                   const float* exit, bool from_inside, PacketList& list, float* depth);
 
+/// Corrects depths, m along the rays of `mask`, that are foretold to lie near where the density rises through the
+/// iso-value, by one or two steps of Newton's method.
+/// @return  lanes for which that came to an end near where it was foretold; the depths of others are not to be used
+PacketMask correct_packet(const RaycastField& field, const PacketRays& rays, PacketMask mask, PacketList& list,
+                          float* depth);
+
 /// Normals at the points of `mask` ([Xiao2017] 3.3), unit, out of the water; `towards` is taken where the
 /// neighbours tell nothing. Points should lie near each other.
 void normals_packet(const RaycastField& field, const PacketPoints& points, PacketMask mask, const PacketPoints& towards,

@@ -13,25 +13,10 @@ void set(PacketRays& rays, int l, const Ray& ray) {
 
 }  // namespace
 
-PacketMask picture_rays(const View& view, int x, int y, PacketRays& rays) {
-  alignas(64) float at_x[kPacket], at_y[kPacket];
-  PacketMask mask = 0xffff;
-  const bool within = x + kPacketWidth <= view.width && y + kPacketHeight <= view.height;
-  for (int l = 0; l < kPacket; ++l) {
-    at_x[l] = static_cast<float>(x + l % kPacketWidth) + 0.5f;
-    at_y[l] = static_cast<float>(y + l / kPacketWidth) + 0.5f;
-  }
-  if (!within) {
-    const float last_x = static_cast<float>(view.width) - 0.5f, last_y = static_cast<float>(view.height) - 0.5f;
-    for (int l = 0; l < kPacket; ++l) {
-      if (at_x[l] > last_x || at_y[l] > last_y) mask &= ~(1u << l);
-      at_x[l] = std::min(at_x[l], last_x);
-      at_y[l] = std::min(at_y[l], last_y);
-    }
-  }
+void rays_through(const View& view, const float* at_x, const float* at_y, PacketRays& rays) {
   if (view.projection != Projection::perspective) {
     for (int l = 0; l < kPacket; ++l) set(rays, l, view.ray({at_x[l], at_y[l]}));
-    return mask;
+    return;
   }
   // View::ray(), operation by operation, in a form that compilers vectorise.
   const float per_pixel = 2.0f * view.half_height / static_cast<float>(view.height);
@@ -51,6 +36,25 @@ PacketMask picture_rays(const View& view, int x, int y, PacketRays& rays) {
     rays.dy[l] = dy[l] * per[l];
     rays.dz[l] = dz[l] * per[l];
   }
+}
+
+PacketMask picture_rays(const View& view, int x, int y, PacketRays& rays) {
+  alignas(64) float at_x[kPacket], at_y[kPacket];
+  PacketMask mask = 0xffff;
+  const bool within = x + kPacketWidth <= view.width && y + kPacketHeight <= view.height;
+  for (int l = 0; l < kPacket; ++l) {
+    at_x[l] = static_cast<float>(x + l % kPacketWidth) + 0.5f;
+    at_y[l] = static_cast<float>(y + l / kPacketWidth) + 0.5f;
+  }
+  if (!within) {
+    const float last_x = static_cast<float>(view.width) - 0.5f, last_y = static_cast<float>(view.height) - 0.5f;
+    for (int l = 0; l < kPacket; ++l) {
+      if (at_x[l] > last_x || at_y[l] > last_y) mask &= ~(1u << l);
+      at_x[l] = std::min(at_x[l], last_x);
+      at_y[l] = std::min(at_y[l], last_y);
+    }
+  }
+  rays_through(view, at_x, at_y, rays);
   return mask;
 }
 

@@ -5,6 +5,9 @@
 
 namespace meniscus {
 
+/// View::ray() for sixteen points of a picture, to the same bits.
+void rays_through(const View& view, const float* x, const float* y, PacketRays& rays);
+
 /// Pixels of a packet of a picture: lane l is at (x + l % 8, y + l / 8).
 constexpr int kPacketWidth = 8, kPacketHeight = 2;
 

@@ -8,6 +8,7 @@
 // after highway.h
 #include <hwy/contrib/math/math-inl.h>
 
+#include "surface/packet_march-inl.h"
 #include "surface/packet_normals-inl.h"
 #include "surface/packet_sums-inl.h"
 
@@ -15,232 +16,6 @@ HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
 namespace {
-
-/// The march of one packet. Sample n of a lane lies at entry + n step, as in the plain method; only which lanes
-/// are summed together differs. Lanes that are near each other share a list of the particles around a segment
-/// of their beam.
-class March {
- public:
-  March(const RaycastField& field, const PacketRays& rays, const float* entry, const float* exit, bool from_inside,
-        PacketList& list)
-      : field_(field), rays_(rays), entry_(entry), exit_(exit), sign_(from_inside ? -1.0f : 1.0f), list_(list) {}
-
-  void run(PacketMask mask, float* depth) {
-    for (int l = 0; l < kPacket; ++l) {
-      depth[l] = std::numeric_limits<float>::infinity();
-      count_[l] = 0;
-      at_[l] = entry_[l];
-      before_[l] = earlier_[l] = 0.0f;
-      if (((mask >> l) & 1u) && !(entry_[l] <= exit_[l])) mask &= ~(1u << l);
-    }
-    fresh_ = mask;
-    active_ = mask;
-    while (active_ != 0) {
-      // The lanes whose next sample lies in the first stretch of the beam go on together.
-      float first = std::numeric_limits<float>::infinity();
-      for_each_lane(active_, [&](int l) { first = std::min(first, at_[l]); });
-      const float last = first + kStretch * field_.options.spacing;
-      PacketMask group = 0;
-      for_each_lane(active_, [&](int l) { group |= at_[l] < last ? 1u << l : 0u; });
-      gather_around(
-          group, [&](int l) { return std::max(at_[l] - 2.0f * field_.step, entry_[l]); },
-          [&](int l) { return std::min(last, exit_[l]); });
-      if (list_.count == 0 && sign_ > 0 && !list_.near_full)
-        skip(group, last);
-      else
-        walk(group, last, depth);
-    }
-    start_inside(depth);
-  }
-
- private:
-  static constexpr float kStretch = 1.0f;  ///< spacings; longer lists cost more than more of them
-
-  template <class Visit>
-  static void for_each_lane(PacketMask mask, Visit visit) {
-    for (; mask != 0; mask &= mask - 1) visit(__builtin_ctz(mask));
-  }
-
-  /// Fills the list with the particles within the smoothing length of the box around the lanes' segments.
-  template <class From, class To>
-  void gather_around(PacketMask lanes, From from, To to) {
-    vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
-    for_each_lane(lanes, [&](int l) {
-      for (const float t : {from(l), to(l)}) {
-        const float x = rays_.ox[l] + t * rays_.dx[l], y = rays_.oy[l] + t * rays_.dy[l],
-                    z = rays_.oz[l] + t * rays_.dz[l];
-        low = {std::min(low.x, x), std::min(low.y, y), std::min(low.z, z)};
-        high = {std::max(high.x, x), std::max(high.y, y), std::max(high.z, z)};
-      }
-    });
-    gather_list(field_, low, high, field_.options.smoothing_length, false, list_);
-  }
-
-  /// Values are sign (rho - iso): a lane has crossed when its value is not negative.
-  void values_at(const float* t, float* values) {
-    density_along_rays(field_, list_, rays_, t, values);
-    for (int l = 0; l < kPacket; ++l) values[l] = sign_ * (values[l] - field_.options.iso);
-  }
-
-  void advance(int l) {
-    ++count_[l];
-    at_[l] = entry_[l] + static_cast<float>(count_[l]) * field_.step;
-    fresh_ &= ~(1u << l);
-  }
-
-  /// No particle is near: every sample of the stretch has density zero.
-  void skip(PacketMask group, float last) {
-    for_each_lane(group, [&](int l) {
-      while (at_[l] < last && at_[l] <= exit_[l]) advance(l);
-      before_[l] = earlier_[l] = -field_.options.iso;
-      if (at_[l] > exit_[l]) active_ &= ~(1u << l);
-    });
-  }
-
-  void walk(PacketMask group, float last, float* depth) {
-    alignas(64) float values[kPacket];
-    PacketMask bracketed = 0;
-    for (;;) {
-      PacketMask walking = 0;
-      for_each_lane(group & active_ & ~bracketed, [&](int l) {
-        if (at_[l] > exit_[l])
-          active_ &= ~(1u << l);
-        else if (at_[l] < last)
-          walking |= 1u << l;
-      });
-      if (walking == 0) break;
-      values_at(at_, values);
-      PacketMask summits = 0;
-      alignas(64) float summit[kPacket];
-      std::copy_n(at_, kPacket, summit);
-      for_each_lane(walking, [&](int l) {
-        if (values[l] < 0.0f) {
-          if (count_[l] >= 2 && before_[l] > earlier_[l] && before_[l] > values[l]) {
-            const Summit found = summit_of(earlier_[l], before_[l], values[l]);
-            if (found.value > -kSummitMargin * field_.options.iso) {
-              summit[l] = at_[l] - field_.step + found.place * field_.step;
-              summits |= 1u << l;
-            }
-          }
-        } else if ((fresh_ >> l) & 1u) {
-          started_inside_ |= 1u << l;
-          active_ &= ~(1u << l);
-        } else {
-          bracketed |= 1u << l;
-          bracket(l, at_[l] - field_.step, before_[l], at_[l], values[l]);
-        }
-      });
-      if (summits != 0) bracketed |= climb(summits, summit);
-      for_each_lane(walking & ~bracketed & active_, [&](int l) {
-        earlier_[l] = before_[l];
-        before_[l] = values[l];
-        advance(l);
-      });
-    }
-    refine(bracketed, depth);
-    active_ &= ~bracketed;
-  }
-
-  void bracket(int l, float low_t, float low_value, float high_t, float high_value) {
-    low_t_[l] = low_t;
-    low_value_[l] = low_value;
-    high_t_[l] = high_t;
-    high_value_[l] = high_value;
-  }
-
-  /// Looks at summits between the last samples; brackets the lanes that have crossed there, and tells which.
-  PacketMask climb(PacketMask lanes, const float* summit) {
-    alignas(64) float values[kPacket];
-    values_at(summit, values);
-    PacketMask crossed = 0;
-    for_each_lane(lanes, [&](int l) {
-      if (values[l] < 0.0f) return;
-      const float middle = at_[l] - field_.step;
-      if (summit[l] > middle)
-        bracket(l, middle, before_[l], summit[l], values[l]);
-      else
-        bracket(l, middle - field_.step, earlier_[l], summit[l], values[l]);
-      crossed |= 1u << l;
-    });
-    return crossed;
-  }
-
-  /// Where the line through the ends of the bracket is zero.
-  float secant(int l) const {
-    const float rise = high_value_[l] - low_value_[l];
-    const float part = rise > 0.0f ? -low_value_[l] / rise : 0.5f;
-    return low_t_[l] + std::clamp(part, 0.0f, 1.0f) * (high_t_[l] - low_t_[l]);
-  }
-
-  void refine(PacketMask bracketed, float* depth) {
-    if (bracketed == 0) return;
-    alignas(64) float t[kPacket], values[kPacket];
-    const bool by_secant = field_.options.refinement == Refinement::secant;
-    std::copy_n(at_, kPacket, t);
-    for (int i = 0; i < field_.options.refinement_steps; ++i) {
-      for_each_lane(bracketed, [&](int l) { t[l] = by_secant ? secant(l) : 0.5f * (low_t_[l] + high_t_[l]); });
-      values_at(t, values);
-      for_each_lane(bracketed, [&](int l) {
-        (values[l] < 0.0f ? low_t_ : high_t_)[l] = t[l];
-        (values[l] < 0.0f ? low_value_ : high_value_)[l] = values[l];
-      });
-    }
-    for_each_lane(bracketed, [&](int l) { depth[l] = secant(l); });
-  }
-
-  /// Lanes whose very first sample had crossed (particles packed closer than expected): steps back, a smoothing
-  /// length at most, until outside.
-  void start_inside(float* depth) {
-    alignas(64) float t[kPacket], values[kPacket];
-    const int steps = static_cast<int>(std::ceil(field_.options.smoothing_length / field_.step));
-    while (started_inside_ != 0) {
-      float first = std::numeric_limits<float>::infinity();
-      for_each_lane(started_inside_, [&](int l) { first = std::min(first, entry_[l]); });
-      PacketMask group = 0;
-      for_each_lane(started_inside_,
-                    [&](int l) { group |= entry_[l] < first + field_.options.smoothing_length ? 1u << l : 0u; });
-      started_inside_ &= ~group;
-      gather_around(
-          group, [&](int l) { return std::max(entry_[l] - static_cast<float>(steps) * field_.step, 0.0f); },
-          [&](int l) { return entry_[l]; });
-      std::copy_n(entry_, kPacket, t);
-      values_at(t, high_value_);
-      PacketMask bracketed = 0;
-      for_each_lane(group, [&](int l) { high_t_[l] = depth[l] = entry_[l]; });
-      for (int n = 1; n <= steps && group != 0; ++n) {
-        for_each_lane(group, [&](int l) { t[l] = std::max(entry_[l] - static_cast<float>(n) * field_.step, 0.0f); });
-        values_at(t, values);
-        PacketMask done = 0;
-        for_each_lane(group, [&](int l) {
-          if (values[l] < 0.0f) {
-            low_t_[l] = t[l];
-            low_value_[l] = values[l];
-            bracketed |= 1u << l;
-            done |= 1u << l;
-          } else {
-            high_t_[l] = depth[l] = t[l];
-            high_value_[l] = values[l];
-            if (t[l] == 0.0f) done |= 1u << l;
-          }
-        });
-        group &= ~done;
-      }
-      refine(bracketed, depth);
-    }
-  }
-
-  const RaycastField& field_;
-  const PacketRays& rays_;
-  const float* entry_;
-  const float* exit_;
-  float sign_;
-  PacketList& list_;
-  PacketMask active_ = 0, fresh_ = 0, started_inside_ = 0;
-  int count_[kPacket];
-  alignas(64) float at_[kPacket];
-  float earlier_[kPacket], before_[kPacket];  ///< values of the last two samples
-  float low_t_[kPacket], low_value_[kPacket], high_t_[kPacket], high_value_[kPacket];
-};
 
 /// Calls visit(lanes) for groups of the mask's points that lie within `reach` of the first of them along each
 /// axis, with the list gathered around the group.
@@ -267,11 +42,54 @@ void for_each_cluster(const RaycastField& field, const PacketPoints& points, Pac
   }
 }
 
+/// Corrections of depths foretold, in spacings: the farthest that is believed, one that needs no further step (what is
+/// left after a step of Newton's method is about its square), and the least slope of rho for one, per spacing.
+constexpr float kFarthestCorrection = 0.25f, kNearCorrection = 0.04f, kLeastSlope = 0.05f;
+
 }  // namespace
 
 void MarchPacket(const RaycastField& field, const PacketRays& rays, PacketMask mask, const float* entry,
                  const float* exit, bool from_inside, PacketList& list, float* depth) {
   March(field, rays, entry, exit, from_inside, list).run(mask, depth);
+}
+
+PacketMask CorrectPacket(const RaycastField& field, const PacketRays& rays, PacketMask mask, PacketList& list,
+                         float* depth) {
+  const Tag d;
+  const float spacing = field.options.spacing;
+  const Vec iso = hn::Set(d, field.options.iso), least_slope = hn::Set(d, kLeastSlope / spacing);
+  const Vec farthest = hn::Set(d, kFarthestCorrection * spacing), near = hn::Set(d, kNearCorrection * spacing);
+  PacketPoints points;
+  for (int l = 0; l < kPacket; l += static_cast<int>(hn::Lanes(d))) {
+    const Vec t = hn::Load(d, depth + l);
+    hn::Store(hn::MulAdd(t, hn::Load(d, rays.dx + l), hn::Load(d, rays.ox + l)), d, points.x + l);
+    hn::Store(hn::MulAdd(t, hn::Load(d, rays.dy + l), hn::Load(d, rays.oy + l)), d, points.y + l);
+    hn::Store(hn::MulAdd(t, hn::Load(d, rays.dz + l), hn::Load(d, rays.oz + l)), d, points.z + l);
+  }
+  alignas(64) float foretold[kPacket], rho[kPacket], slope[kPacket];
+  std::copy_n(depth, kPacket, foretold);
+  PacketMask found = 0;
+  for_each_cluster(field, points, mask, 2.0f * spacing, field.options.smoothing_length + kFarthestCorrection * spacing,
+                   false, list, [&](PacketMask group) {
+                     PacketMask open = list.near_full ? 0 : group;  // lists there miss particles
+                     for (int i = 0; i < 2 && open != 0; ++i) {
+                       density_slopes(field, list, rays, depth, rho, slope);
+                       PacketMask close = 0, wrong = 0;
+                       for_each_chunk(open, [&](int l, auto of) {
+                         const Vec steep = hn::Load(d, slope + l), place = hn::Load(d, depth + l);
+                         const Vec rise = hn::Div(hn::Sub(iso, hn::Load(d, rho + l)), hn::Max(steep, least_slope));
+                         const Vec next = hn::Add(place, rise);
+                         const auto good = hn::And(hn::And(of, hn::Gt(steep, least_slope)),
+                                                   hn::Le(hn::Abs(hn::Sub(next, hn::Load(d, foretold + l))), farthest));
+                         store_in(good, next, depth + l);
+                         close |= bits_of(hn::And(good, hn::Le(hn::Abs(rise), near))) << l;
+                         wrong |= bits_of(hn::AndNot(good, of)) << l;
+                       });
+                       found |= close;
+                       open &= ~(close | wrong);
+                     }
+                   });
+  return found;
 }
 
 void NormalsPacket(const RaycastField& field, const PacketPoints& points, PacketMask mask, const PacketPoints& towards,
@@ -324,6 +142,7 @@ HWY_AFTER_NAMESPACE();
 namespace meniscus {
 
 HWY_EXPORT(MarchPacket);
+HWY_EXPORT(CorrectPacket);
 HWY_EXPORT(NormalsPacket);
 HWY_EXPORT(DensityPacket);
 HWY_EXPORT(ColoursPacket);
@@ -331,6 +150,11 @@ HWY_EXPORT(ColoursPacket);
 void march_packet(const RaycastField& field, const PacketRays& rays, PacketMask mask, const float* entry,
                   const float* exit, bool from_inside, PacketList& list, float* depth) {
   HWY_DYNAMIC_DISPATCH(MarchPacket)(field, rays, mask, entry, exit, from_inside, list, depth);
+}
+
+PacketMask correct_packet(const RaycastField& field, const PacketRays& rays, PacketMask mask, PacketList& list,
+                          float* depth) {
+  return HWY_DYNAMIC_DISPATCH(CorrectPacket)(field, rays, mask, list, depth);
 }
 
 void normals_packet(const RaycastField& field, const PacketPoints& points, PacketMask mask, const PacketPoints& towards,
