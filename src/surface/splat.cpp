@@ -1,43 +1,12 @@
 #include "surface/splat.h"
 
-#include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
-
+#include "surface/splat_camera.h"
 #include "surface/splat_tile.h"
 
 namespace meniscus {
 namespace {
 
 constexpr std::size_t kGrain = 1 << 15;
-
-/// Picture geometry in camera space; coordinates of a pixel (x, y) of the splatted picture are u0 + x du ...
-struct Camera {
-  explicit Camera(const View& view, int stride) : view(&view), perspective(view.projection == Projection::perspective) {
-    width = (view.width + stride - 1) / stride;
-    height = (view.height + stride - 1) / stride;
-    const float pixel = 2.0f * view.half_height / static_cast<float>(view.height);
-    du = pixel * static_cast<float>(stride);
-    dv = -du;
-    u0 = (0.5f * static_cast<float>(stride) - 0.5f * static_cast<float>(view.width)) * pixel;
-    v0 = -(0.5f * static_cast<float>(stride) - 0.5f * static_cast<float>(view.height)) * pixel;
-  }
-  vec3 to_camera(vec3 point) const {
-    const vec3 offset = point - view->eye;
-    return {glm::dot(offset, view->right), glm::dot(offset, view->up), glm::dot(offset, view->forward)};
-  }
-
-  const View* view;
-  bool perspective;
-  int width, height;
-  float u0, v0, du, dv;
-};
-
-/// Pixels that a sphere may cover, both ends included; x0 > x1 when there are none.
-struct PixelRect {
-  std::uint16_t x0 = 1, x1 = 0, y0 = 1, y1 = 0;
-  bool empty() const { return x0 > x1; }
-};
 
 struct Range {
   float low, high;
@@ -53,7 +22,7 @@ Range tangents(float c, float z, float radius) {
   return {(c * z - root) / denominator, (c * z + root) / denominator};
 }
 
-PixelRect covered_pixels(const Camera& camera, vec3 centre, float radius) {
+SampleRect covered_pixels(const SplatCamera& camera, vec3 centre, float radius) {
   Range u, v;
   if (camera.perspective) {
     u = tangents(centre.x, centre.z, radius);
@@ -64,21 +33,13 @@ PixelRect covered_pixels(const Camera& camera, vec3 centre, float radius) {
     u = {centre.x - radius, centre.x + radius};
     v = {centre.y - radius, centre.y + radius};
   }
-  // A hundredth of a pixel more than needed keeps rounding from losing a pixel.
-  const float x0 = std::ceil((u.low - camera.u0) / camera.du - 0.01f);
-  const float x1 = std::floor((u.high - camera.u0) / camera.du + 0.01f);
-  const float y0 = std::ceil((v.high - camera.v0) / camera.dv - 0.01f);
-  const float y1 = std::floor((v.low - camera.v0) / camera.dv + 0.01f);
-  const float last_x = static_cast<float>(camera.width - 1), last_y = static_cast<float>(camera.height - 1);
-  if (!(x0 <= last_x && x1 >= 0.0f && y0 <= last_y && y1 >= 0.0f && x0 <= x1 && y0 <= y1)) return {};
-  return {static_cast<std::uint16_t>(std::max(x0, 0.0f)), static_cast<std::uint16_t>(std::min(x1, last_x)),
-          static_cast<std::uint16_t>(std::max(y0, 0.0f)), static_cast<std::uint16_t>(std::min(y1, last_y))};
+  return samples_within(camera, u.low, u.high, v.low, v.high);
 }
 
 /// Spheres by the tile that they touch, in their given order within each tile.
 struct Bins {
   int tiles_x = 0, tiles_y = 0;
-  std::vector<PixelRect> rects;      ///< by sphere
+  std::vector<SampleRect> rects;     ///< by sphere
   std::vector<std::uint32_t> start;  ///< by tile, and one more
   std::vector<std::uint32_t> spheres;
 };
@@ -88,14 +49,14 @@ float radius_of(const Spheres& spheres, std::size_t i) {
 }
 
 template <class Visit>
-void for_each_tile(const Bins& bins, const PixelRect& rect, Visit visit) {
+void for_each_tile(const Bins& bins, const SampleRect& rect, Visit visit) {
   if (rect.empty()) return;
   for (int ty = rect.y0 / kTileHeight; ty <= rect.y1 / kTileHeight; ++ty)
     for (int tx = rect.x0 / kTileWidth; tx <= rect.x1 / kTileWidth; ++tx)
       visit(static_cast<std::size_t>(ty * bins.tiles_x + tx));
 }
 
-Bins sort_into_tiles(const Camera& camera, const Spheres& spheres) {
+Bins sort_into_tiles(const SplatCamera& camera, const Spheres& spheres) {
   Bins bins;
   const std::size_t count = spheres.x.size();
   bins.tiles_x = (camera.width + kTileWidth - 1) / kTileWidth;
@@ -139,7 +100,7 @@ struct TileArea {
 
 /// Calls visit(rays, sphere) for every sphere of the tile, then is done with it.
 template <class Visit>
-void splat_tile(const Camera& camera, const Spheres& spheres, const Bins& bins, std::size_t tile, TileArea& area,
+void splat_tile(const SplatCamera& camera, const Spheres& spheres, const Bins& bins, std::size_t tile, TileArea& area,
                 Visit visit) {
   const int tile_x = static_cast<int>(tile) % bins.tiles_x, tile_y = static_cast<int>(tile) / bins.tiles_x;
   area = {tile_x * kTileWidth, tile_y * kTileHeight, 0, 0};
@@ -157,7 +118,7 @@ void splat_tile(const Camera& camera, const Spheres& spheres, const Bins& bins, 
       }
   for (std::uint32_t at = bins.start[tile]; at < bins.start[tile + 1]; ++at) {
     const std::uint32_t i = bins.spheres[at];
-    const PixelRect& rect = bins.rects[i];
+    const SampleRect& rect = bins.rects[i];
     const vec3 centre = camera.to_camera({spheres.x[i], spheres.y[i], spheres.z[i]});
     visit(rays, TileSphere{centre.x, centre.y, centre.z, radius_of(spheres, i), std::max(rect.x0 - area.x, 0),
                            std::min(rect.x1 - area.x, kTileWidth - 1), std::max(rect.y0 - area.y, 0),
@@ -172,27 +133,8 @@ void copy_tile(const float* tile, const TileArea& area, Image<float>& picture) {
 
 }  // namespace
 
-void splat_depth(const View& view, const Spheres& spheres, Image<float>& entry, Image<float>& exit) {
-  const Camera camera(view, 1);
-  const Bins bins = sort_into_tiles(camera, spheres);
-  entry = Image<float>(camera.width, camera.height);
-  exit = Image<float>(camera.width, camera.height);
-  parallel_for(static_cast<std::size_t>(bins.tiles_x * bins.tiles_y), 1, [&](std::size_t tile, std::size_t) {
-    alignas(64) float tile_entry[kTileWidth * kTileHeight];
-    alignas(64) float tile_exit[kTileWidth * kTileHeight];
-    std::fill_n(tile_entry, kTileWidth * kTileHeight, std::numeric_limits<float>::infinity());
-    std::fill_n(tile_exit, kTileWidth * kTileHeight, -std::numeric_limits<float>::infinity());
-    TileArea area{};
-    splat_tile(camera, spheres, bins, tile, area, [&](const TileRays& rays, const TileSphere& sphere) {
-      splat_depth_into_tile(rays, sphere, tile_entry, tile_exit);
-    });
-    copy_tile(tile_entry, area, entry);
-    copy_tile(tile_exit, area, exit);
-  });
-}
-
 Image<float> splat_chords(const View& view, const Spheres& spheres, float weight, int stride) {
-  const Camera camera(view, stride);
+  const SplatCamera camera(view, stride);
   const Bins bins = sort_into_tiles(camera, spheres);
   Image<float> sums(camera.width, camera.height);
   parallel_for(static_cast<std::size_t>(bins.tiles_x * bins.tiles_y), 1, [&](std::size_t tile, std::size_t) {

@@ -52,17 +52,6 @@ HWY_INLINE void for_each_chord(const TileRays& rays, const TileSphere& sphere, V
   }
 }
 
-void splat_depth(const TileRays& rays, const TileSphere& sphere, float* HWY_RESTRICT entry, float* HWY_RESTRICT exit) {
-  for_each_chord(rays, sphere, [&](Tag d, int offset, Vec middle, Vec half, auto hits) {
-    const Vec far_end = hn::Add(middle, half);
-    hits = hn::And(hits, hn::Gt(far_end, hn::Zero(d)));
-    const Vec near_end = hn::Max(hn::Sub(middle, half), hn::Zero(d));
-    const Vec before = hn::Load(d, entry + offset), after = hn::Load(d, exit + offset);
-    hn::Store(hn::IfThenElse(hits, hn::Min(before, near_end), before), d, entry + offset);
-    hn::Store(hn::IfThenElse(hits, hn::Max(after, far_end), after), d, exit + offset);
-  });
-}
-
 void splat_chord(const TileRays& rays, const TileSphere& sphere, float* HWY_RESTRICT sum) {
   for_each_chord(rays, sphere, [&](Tag d, int offset, Vec middle, Vec half, auto hits) {
     const Vec near_end = hn::Max(hn::Sub(middle, half), hn::Zero(d));
@@ -73,9 +62,6 @@ void splat_chord(const TileRays& rays, const TileSphere& sphere, float* HWY_REST
 
 }  // namespace
 
-void SplatDepth(const TileRays& rays, const TileSphere& sphere, float* entry, float* exit) {
-  splat_depth(rays, sphere, entry, exit);
-}
 void SplatChord(const TileRays& rays, const TileSphere& sphere, float* sum) { splat_chord(rays, sphere, sum); }
 
 }  // namespace HWY_NAMESPACE
@@ -85,12 +71,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meniscus {
 
-HWY_EXPORT(SplatDepth);
 HWY_EXPORT(SplatChord);
-
-void splat_depth_into_tile(const TileRays& rays, const TileSphere& sphere, float* entry, float* exit) {
-  HWY_DYNAMIC_DISPATCH(SplatDepth)(rays, sphere, entry, exit);
-}
 
 void splat_chord_into_tile(const TileRays& rays, const TileSphere& sphere, float* sum) {
   HWY_DYNAMIC_DISPATCH(SplatChord)(rays, sphere, sum);

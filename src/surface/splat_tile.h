@@ -24,8 +24,6 @@ struct TileSphere {
   int x0, x1, y0, y1;
 };
 
-/// entry = min(entry, distance to the sphere), exit = max(exit, distance at which it is left).
-void splat_depth_into_tile(const TileRays& rays, const TileSphere& sphere, float* entry, float* exit);
 /// sum += length of the ray inside of the sphere and before the eye.
 void splat_chord_into_tile(const TileRays& rays, const TileSphere& sphere, float* sum);
 
