@@ -50,6 +50,26 @@ TEST(Png, ComesBackAsItWasWritten) {
   EXPECT_EQ(scratch.names(), std::vector<std::string>{"a.png"});
 }
 
+/// Parts of large pictures are compressed side by side, each with what came before it in sight.
+TEST(Png, OfManyPiecesIsTheSameForAnyNumberOfThreads) {
+  const Scratch scratch;
+  Image<Rgb8> picture = sample(701, 450);
+  std::uint32_t state = 1;
+  for (Rgb8& pixel : picture) {
+    state = state * 1664525u + 1013904223u;
+    if (state >> 31 != 0) pixel.g = static_cast<std::uint8_t>(state >> 20);
+  }
+  for (const int threads : {1, 2, 5}) {
+    const ThreadLimit limit(threads);
+    write_png(scratch / std::to_string(threads), picture);
+    EXPECT_TRUE(same(read_png(scratch / std::to_string(threads)), picture)) << threads;
+  }
+  EXPECT_EQ(bytes_of(scratch / "1"), bytes_of(scratch / "2"));
+  EXPECT_EQ(bytes_of(scratch / "1"), bytes_of(scratch / "5"));
+  const std::string bytes = bytes_of(scratch / "1");
+  EXPECT_NE(bytes.find("IDAT"), bytes.rfind("IDAT"));
+}
+
 TEST(Png, IsTaggedAsSrgb) {
   const Scratch scratch;
   write_png(scratch / "a.png", sample(4, 4));
