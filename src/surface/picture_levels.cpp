@@ -8,9 +8,9 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kWidestLevel = 1.0f;    ///< spacings between known pixels
 constexpr float kClose = 0.4f;          ///< spacings between known pixels, for interpolation to do
-constexpr float kSmooth = 0.05f;        ///< spacings of second differences, up to which it does
+constexpr float kSmooth = 0.1f;         ///< spacings of second differences, up to which it does
 constexpr float kGuess = 1.0f;          ///< the same, for a first guess
-constexpr float kFarthestEntry = 2.0f;  ///< spacings before the surface
+constexpr float kFarthestEntry = 3.0f;  ///< spacings before the surface
 constexpr float kEntryJump = 0.3f;      ///< spacings by which the entry may come earlier than its neighbours'
 constexpr int kTile = 16, kHalf = kTile / 2;
 constexpr int kHalo = 1, kRow = kHalf + 1 + 2 * kHalo;  ///< known pixels of a tile and around it
@@ -65,34 +65,36 @@ void Foretelling::tile(int x0, int y0, int x1, int y1, Image<float>& depth, Tile
     if (x >= x1 || y >= y1) return;
     const float entry = buffers_.entry(x * stride_, y * stride_);
     if (!(entry <= buffers_.exit(x * stride_, y * stride_))) return;
-    const float before = linear - entry;
+    const float before = linear - entry, off = std::abs(smooth - linear);
     // Comparisons with what is not known, infinite or not a number, are false.
     const bool foretold = before <= farthest && before <= most + jump && before >= 0.0f &&
-                          size_at_zero_ + size_per_metre_ * linear <= widest && rough <= kGuess * spacing_;
+                          size_at_zero_ + size_per_metre_ * linear <= widest && rough <= kGuess * spacing_ &&
+                          off <= 0.25f * kGuess * spacing_;
     if (!foretold) return unknown.add(x, y);
     depth(x, y) = smooth;
     const bool close = size_at_zero_ + size_per_metre_ * linear <= (kClose / kWidestLevel) * widest;
-    if (!close || rough > kSmooth * spacing_) open.add(x, y);
+    if (!close || rough > kSmooth * spacing_ || off > 0.25f * kSmooth * spacing_) open.add(x, y);
   };
-  for (int j = 0; j < kHalf; ++j)
-    for (int i = 0; i < kHalf; ++i) {
-      const int x = x0 + 2 * i, y = y0 + 2 * j;
-      if (x >= x1 || y >= y1) continue;
-      const float(*rows)[kRow] = &around[j];
-      const float here = rows[1][i + 1], right = rows[1][i + 2], below = rows[2][i + 1], across = rows[2][i + 2];
-      depth(x, y) = here;
-      float along[4];
-      for (int k = 0; k < 4; ++k) along[k] = cubic(rows[k][i], rows[k][i + 1], rows[k][i + 2], rows[k][i + 3]);
-      const auto most = [&](const float(*values)[kRow], int right_by, int down_by) {
-        return std::max(std::max(values[j + 1][i + 1], values[j + 1][i + 1 + right_by]),
-                        std::max(values[j + 1 + down_by][i + 1], values[j + 1 + down_by][i + 1 + right_by]));
-      };
-      decide(x + 1, y, 0.5f * (here + right), along[1], most(gap, 1, 0), most(bend, 1, 0));
-      decide(x, y + 1, 0.5f * (here + below), cubic(rows[0][i + 1], here, below, rows[3][i + 1]), most(gap, 0, 1),
-             most(bend, 0, 1));
-      decide(x + 1, y + 1, 0.25f * (here + right + below + across), cubic(along[0], along[1], along[2], along[3]),
-             most(gap, 1, 1), most(bend, 1, 1));
-    }
+  // In the order of a Z-shaped curve, so that pixels drawn together lie near each other.
+  for (int at = 0; at < kHalf * kHalf; ++at) {
+    const int i = (at & 1) | (at >> 1 & 2) | (at >> 2 & 4), j = (at >> 1 & 1) | (at >> 2 & 2) | (at >> 3 & 4);
+    const int x = x0 + 2 * i, y = y0 + 2 * j;
+    if (x >= x1 || y >= y1) continue;
+    const float(*rows)[kRow] = &around[j];
+    const float here = rows[1][i + 1], right = rows[1][i + 2], below = rows[2][i + 1], across = rows[2][i + 2];
+    depth(x, y) = here;
+    float along[4];
+    for (int k = 0; k < 4; ++k) along[k] = cubic(rows[k][i], rows[k][i + 1], rows[k][i + 2], rows[k][i + 3]);
+    const auto most = [&](const float(*values)[kRow], int right_by, int down_by) {
+      return std::max(std::max(values[j + 1][i + 1], values[j + 1][i + 1 + right_by]),
+                      std::max(values[j + 1 + down_by][i + 1], values[j + 1 + down_by][i + 1 + right_by]));
+    };
+    decide(x + 1, y, 0.5f * (here + right), along[1], most(gap, 1, 0), most(bend, 1, 0));
+    decide(x, y + 1, 0.5f * (here + below), cubic(rows[0][i + 1], here, below, rows[3][i + 1]), most(gap, 0, 1),
+           most(bend, 0, 1));
+    decide(x + 1, y + 1, 0.25f * (here + right + below + across), cubic(along[0], along[1], along[2], along[3]),
+           most(gap, 1, 1), most(bend, 1, 1));
+  }
 }
 
 }  // namespace meniscus
