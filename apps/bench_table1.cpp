@@ -29,10 +29,12 @@ constexpr std::array<PaperRow, 5> kPaper{{{779'752, {0.00936, 0.0127, 0.0178, 0.
                                           {37'975'520, {0.1565, 0.2119, 0.2966, 0.4494, 0.7062}},
                                           {142'612'764, {0.5926, 0.6600, 0.7840, 1.3879, 2.3663}}}};
 
+constexpr std::size_t kMostParticles = 4'000'000'000;
+
 struct Table1Arguments {
   std::vector<std::size_t> particles;
   std::vector<int> sizes;
-  std::size_t max_particles = kPaper.back().particles;
+  std::size_t max_particles = kMostParticles;
   int repeat = 5;
   int threads = 0;
   std::string frames;
@@ -236,12 +238,12 @@ void add_bench_table1(CLI::App& bench) {
                    "Particles of the crowns, with commas (default: 779752,2027776,12394215,37975520,142612764)")
       ->type_name("N,...")
       ->delimiter(',')
-      ->check(CLI::Range(std::size_t{1000}, std::size_t{4'000'000'000}).description(""));
+      ->check(CLI::Range(std::size_t{1000}, kMostParticles).description(""));
   command
       ->add_option("--max-particles", arguments->max_particles,
-                   "Leave out what is larger; where nothing is left, one crown of so many (default: 142612764)")
+                   "Leave out what is larger; where nothing is left, one crown of so many (default: all)")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t{1000}, std::size_t{4'000'000'000}).description(""));
+      ->check(CLI::Range(std::size_t{1000}, kMostParticles).description(""));
   command
       ->add_option("--sizes", arguments->sizes,
                    "Width and height of the pictures, px, with commas (default: 512,768,1024,1440,1920)")

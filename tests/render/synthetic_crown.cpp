@@ -63,7 +63,7 @@ TEST(SyntheticCrown, IsNowhereMuchDenserThanItsLattice) {
   for (std::size_t i = 0; i < crown.size(); ++i) ++cells[{index(crown.x[i]), index(crown.y[i]), index(crown.z[i])}];
   int most = 0;
   for (const auto& [place, particles] : cells) most = std::max(most, particles);
-  EXPECT_LE(most, 48);
+  EXPECT_LE(most, 36);
 }
 
 TEST(SyntheticCrown, HasTheSameShapeAtEveryCount) {
