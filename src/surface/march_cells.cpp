@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "surface/packet.h"
+#include "surface/sized_field.h"
 
 namespace meniscus {
 namespace {
@@ -16,12 +17,16 @@ constexpr float kWellInside = 0.5f;
 }  // namespace
 
 MarchCells::MarchCells(const RaycastField& field) {
-  const BandGrid& grid = field.grid;
-  if (grid.size() == 0) return;
-  const Bounds box = grid.bounds().grown(field.options.smoothing_length + 0.01f * field.options.spacing);
+  if (field.grid.size() == 0) return;
+  Bounds box;
+  std::size_t particles = 0;
+  for_each_level(field, [&](const RaycastField& level) {
+    box.add(level.grid.bounds().grown(level.options.smoothing_length + 0.01f * level.options.spacing));
+    particles += level.grid.size();
+  });
   low_ = box.low;
-  size_ = field.options.spacing;
-  const double most = 64.0 * static_cast<double>(grid.size()) + (1 << 20);
+  size_ = field.least_spacing;
+  const double most = 64.0 * static_cast<double>(particles) + (1 << 20);
   const auto cells = [&] {
     double count = 1;
     for (int k = 0; k < 3; ++k) {
@@ -35,8 +40,8 @@ MarchCells::MarchCells(const RaycastField& field) {
   per_size_ = 1.0f / size_;
   kind_.assign(static_cast<std::size_t>(n_[0]) * static_cast<std::size_t>(n_[1]) * static_cast<std::size_t>(n_[2]),
                outside);
-  mark_reached(field);
-  if (size_ == field.options.spacing) mark_inside(field);
+  for_each_level(field, [&](const RaycastField& level) { mark_reached(level); });
+  if (size_ == field.least_spacing) mark_inside(field);
 }
 
 void MarchCells::mark_reached(const RaycastField& field) {

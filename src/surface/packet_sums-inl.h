@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "surface/packet.h"
+#include "surface/packet_sizes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meniscus {
@@ -31,6 +32,7 @@ HWY_INLINE Vec reciprocal_root(Vec v) {
 /// Fills the list with the particles nearer than `radius` to the box, in their sorted order.
 HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, float radius, bool colours,
                               PacketList& list) {
+  if (HWY_UNLIKELY(field.has_sizes())) return gather_sizes(field, low, high, radius, colours, list);
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
   const BandGrid& grid = field.grid;
@@ -107,17 +109,18 @@ HWY_NOINLINE void fill_where_full(const BandGrid& grid, Vec px, Vec py, Vec pz, 
 }
 
 /// rho at sixteen points; position(l) gives three vectors from lane l on.
-template <class Shape, class Position>
+template <class Shape, bool kSizes, class Position>
 HWY_INLINE void sum_density(const RaycastField& field, const PacketList& list, Position position, float* rho) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length);
+  Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length);
   const float *lx = list.x.data(), *ly = list.y.data(), *lz = list.z.data(), *lm = list.mass.data();
   for (int l = 0; l < kPacket; l += lanes) {
     Vec px, py, pz;
     position(l, px, py, pz);
     Vec sum = hn::Zero(d);
     for (std::size_t j = 0; j < list.count; ++j) {
+      if constexpr (kSizes) per_h = hn::Set(d, list.per_smoothing.data()[j]);
       const Vec x = hn::Sub(px, hn::Set(d, lx[j])), y = hn::Sub(py, hn::Set(d, ly[j])),
                 z = hn::Sub(pz, hn::Set(d, lz[j]));
       const Vec r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
@@ -133,11 +136,14 @@ HWY_INLINE void sum_density_by_kernel(const RaycastField& field, const PacketLis
                                       float* rho) {
   switch (field.options.kernel) {
     case Kernel::cubic_spline:
-      return sum_density<CubicSplineShape>(field, list, position, rho);
+      return field.has_sizes() ? sum_density<CubicSplineShape, true>(field, list, position, rho)
+                               : sum_density<CubicSplineShape, false>(field, list, position, rho);
     case Kernel::poly6:
-      return sum_density<Poly6Shape>(field, list, position, rho);
+      return field.has_sizes() ? sum_density<Poly6Shape, true>(field, list, position, rho)
+                               : sum_density<Poly6Shape, false>(field, list, position, rho);
     case Kernel::wyvill:
-      return sum_density<WyvillShape>(field, list, position, rho);
+      return field.has_sizes() ? sum_density<WyvillShape, true>(field, list, position, rho)
+                               : sum_density<WyvillShape, false>(field, list, position, rho);
   }
 }
 
@@ -173,11 +179,12 @@ HWY_MAYBE_UNUSED HWY_NOINLINE void colours_from_list(const RaycastField& field, 
                                                      const PacketPoints& points, PacketPoints& colours) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length);
+  Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length);
   for (int l = 0; l < kPacket; l += lanes) {
     const Vec px = hn::Load(d, points.x + l), py = hn::Load(d, points.y + l), pz = hn::Load(d, points.z + l);
     Vec sum = hn::Set(d, 1e-12f), red = hn::Zero(d), green = hn::Zero(d), blue = hn::Zero(d);
     for (std::size_t j = 0; j < list.count; ++j) {
+      if (field.has_sizes()) per_h = hn::Set(d, list.per_smoothing.data()[j]);
       const Vec x = hn::Sub(px, hn::Set(d, list.x.data()[j])), y = hn::Sub(py, hn::Set(d, list.y.data()[j])),
                 z = hn::Sub(pz, hn::Set(d, list.z.data()[j]));
       const Vec r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));

@@ -13,6 +13,9 @@
 #include "surface/packet.h"
 #include "surface/picture_march.h"
 #include "surface/picture_normals.h"
+#include "surface/sized_field.h"
+#include "surface/sized_masses.h"
+#include "surface/sized_thickness.h"
 #include "surface/splat.h"
 #include "surface/thickness.h"
 
@@ -31,15 +34,19 @@ PacketPoints points_of(vec3 p) {
 
 class RaycastSurface final : public Surface {
  public:
-  RaycastSurface(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours,
-                 StageTimes* times)
+  RaycastSurface(const Particles& particles, const ResolvedSizes& own, std::span<const vec3> colours, StageTimes* times)
       : field_([&] {
           StageTimer timer(times, "sort");
-          return make_field(particles, options, colours, Keep::band);
+          return own.empty() ? make_field(particles, own.options, colours, Keep::band)
+                             : make_sized_field(particles, own, colours);
         }()) {
     StageTimer timer(times, "masses");
-    if (field_.options.keep_thin) find_masses(field_);
+    if (field_.options.keep_thin && field_.has_sizes())
+      find_sized_masses(field_);
+    else if (field_.options.keep_thin)
+      find_masses(field_);
     spheres_ = entry_spheres(field_);
+    for (const RaycastField& level : field_.coarser) spheres_.add(entry_spheres(level));
   }
 
   SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
@@ -79,10 +86,11 @@ class RaycastSurface final : public Surface {
 
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "thickness");
+    if (field_.has_sizes()) return sized_thickness(field_, view, points);
     return splatted_thickness(field_.grid, field_.options.spacing, view, points);
   }
 
-  float spacing() const override { return field_.options.spacing; }
+  float spacing() const override { return field_.least_spacing; }
 
   bool can_march() const override { return true; }
 
@@ -93,7 +101,12 @@ class RaycastSurface final : public Surface {
     march_crossings(field_, *cells_, rays, from, limit, inside, found);
   }
 
-  Bounds bounds() const override { return field_.grid.bounds().grown(field_.options.smoothing_length); }
+  Bounds bounds() const override {
+    Bounds all;
+    for_each_level(
+        field_, [&](const RaycastField& level) { all.add(level.grid.bounds().grown(level.options.smoothing_length)); });
+    return all;
+  }
 
  private:
   /// Whether rays of this view start inside the water.
@@ -128,13 +141,18 @@ class RaycastSurface final : public Surface {
   /// Rays that start amidst hidden cells, in a bubble or on a plane through the water, are inside of no sphere that
   /// was splatted: they march from their start.
   void start_where_hidden(const View& view, SurfaceBuffers& buffers) const {
-    const BandGrid& grid = field_.grid;
-    const auto is_hidden = [&](vec3 at) { return grid.kind_at(at) != BandGrid::open; };
-    if (!grid.has_hidden()) return;
+    bool any_hidden = false;
+    for_each_level(field_, [&](const RaycastField& level) { any_hidden |= level.grid.has_hidden(); });
+    if (!any_hidden) return;
+    const auto is_hidden = [&](vec3 at) {
+      bool hidden = false;
+      for_each_level(field_, [&](const RaycastField& level) { hidden |= level.grid.kind_at(at) != BandGrid::open; });
+      return hidden;
+    };
+    const Bounds box = bounds();
     const bool perspective = view.projection == Projection::perspective;
-    const vec3 half = 0.5f * grid.bounds().extent(), forward = glm::abs(view.forward);
-    if (perspective ? !is_hidden(view.eye)
-                    : glm::dot(grid.bounds().centre() - view.eye, view.forward) > glm::dot(half, forward))
+    const vec3 half = 0.5f * box.extent(), forward = glm::abs(view.forward);
+    if (perspective ? !is_hidden(view.eye) : glm::dot(box.centre() - view.eye, view.forward) > glm::dot(half, forward))
       return;
     parallel_for(static_cast<std::size_t>(view.height), 16, [&](std::size_t begin, std::size_t end) {
       for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
@@ -161,7 +179,7 @@ class RaycastSurface final : public Surface {
         filtered_normals(view, buffers.depth, buffers.normal, field_.options.filter_radius, filter_tolerance());
   }
 
-  float filter_tolerance() const { return 0.5f * field_.options.spacing; }
+  float filter_tolerance() const { return 0.5f * field_.least_spacing; }
 
   RaycastField field_;
   SphereSet spheres_;
@@ -174,8 +192,7 @@ class RaycastSurface final : public Surface {
 std::unique_ptr<Surface> make_raycast_surface(const Particles& particles, const RaycastOptions& options,
                                               std::span<const vec3> colours, StageTimes* times,
                                               const ParticleSizes& sizes) {
-  static_cast<void>(sizes);
-  return std::make_unique<RaycastSurface>(particles, options, colours, times);
+  return std::make_unique<RaycastSurface>(particles, resolve_sizes(sizes, options, particles.size()), colours, times);
 }
 
 }  // namespace meniscus

@@ -98,12 +98,12 @@ MassRule mass_rule(const RaycastOptions& options) {
 
 namespace {
 
-BandGrid::Options grid_options(const RaycastOptions& options, Keep keep) {
+BandGrid::Options grid_options(const RaycastOptions& options, Keep keep, float least_spacing) {
   const float cell = options.smoothing_length;
   BandGrid::Options wanted;
   wanted.cell_size = cell;
   if (keep == Keep::all || (keep == Keep::band && !options.cull_interior)) return wanted;
-  const float inside = cell * cell * cell / (options.spacing * options.spacing * options.spacing);
+  const float inside = cell * cell * cell / (least_spacing * least_spacing * least_spacing);
   wanted.well_filled = std::max(static_cast<std::uint32_t>(kWellFilled * inside), 1u);
   // Marches reach a smoothing length, normals their radius into the water.
   const float reach = std::max(options.smoothing_length, options.normal_radius);
@@ -114,14 +114,15 @@ BandGrid::Options grid_options(const RaycastOptions& options, Keep keep) {
 }  // namespace
 
 RaycastField make_field(const Particles& particles, const RaycastOptions& given, std::span<const vec3> colours,
-                        Keep keep) {
+                        Keep keep, float least_spacing) {
   const RaycastOptions options = resolved(given);
   if (!colours.empty() && colours.size() != particles.size())
     throw Error(ErrorCode::invalid_argument,
                 fmt::format("{} colours were given for {} particles", colours.size(), particles.size()));
   RaycastField field;
   field.options = options;
-  field.grid = BandGrid(particles, grid_options(options, keep));
+  field.least_spacing = least_spacing > 0 ? least_spacing : options.spacing;
+  field.grid = BandGrid(particles, grid_options(options, keep, field.least_spacing));
   const float volume = options.spacing * options.spacing * options.spacing;
   field.scale = volume * kernel_value(options.kernel, 0.0f, options.smoothing_length);
   field.step = options.step * options.smoothing_length;

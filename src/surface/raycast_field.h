@@ -27,6 +27,8 @@ struct RaycastField {
   std::vector<float> per_spacing, per_smoothing;
   std::vector<RaycastField> coarser;  ///< levels of larger particles, ascending; empty where all are alike
 
+  float least_spacing = 0;            ///< m, of the smallest particle of all levels
+
   bool has_colours() const { return !red.empty(); }
   bool has_sizes() const { return !per_spacing.empty(); }
 };
@@ -39,9 +41,10 @@ enum class Keep {
 };
 
 /// Checks the options, sorts the particles and their colours; masses are one.
+/// @param least_spacing  m, of particles of different sizes, whose largest has that of the options; 0: all alike
 /// @throws Error invalid_argument
 RaycastField make_field(const Particles& particles, const RaycastOptions& options, std::span<const vec3> colours,
-                        Keep keep = Keep::all);
+                        Keep keep = Keep::all, float least_spacing = 0);
 
 /// W(r, h) of the field's kernel, 1/m^3.
 float kernel_value(Kernel kernel, float r, float h);

@@ -26,7 +26,7 @@ RaycastField level_of(const Particles& particles, const ResolvedSizes& own, std:
                       const Members& members) {
   Particles chosen;
   std::vector<vec3> chosen_colours;
-  float spacing = 0, length = 0;
+  float spacing = 0, length = 0, least = std::numeric_limits<float>::infinity();
   chosen.x.reserve(members.size());
   chosen.y.reserve(members.size());
   chosen.z.reserve(members.size());
@@ -36,10 +36,12 @@ RaycastField level_of(const Particles& particles, const ResolvedSizes& own, std:
     chosen.z.push_back(particles.z[i]);
     if (!colours.empty()) chosen_colours.push_back(colours[i]);
     spacing = std::max(spacing, own.spacing[i]);
+    least = std::min(least, own.spacing[i]);
     length = std::max(length, own.smoothing_length[i]);
   }
   // The longest reach may be that of a particle with a smaller spacing: then it is more of the largest spacing's.
-  RaycastField field = make_field(chosen, options_of_size(own.options, spacing, length), chosen_colours);
+  RaycastField field = make_field(chosen, options_of_size(own.options, spacing, length), chosen_colours,
+                                  own.options.cull_interior ? Keep::all_kinds : Keep::all, least);
   const std::size_t kept = field.grid.size();
   field.per_spacing.assign(field.mass.size(), 1.0f);
   field.per_smoothing.assign(field.mass.size(), 1.0f);
@@ -63,6 +65,8 @@ RaycastField make_sized_field(const Particles& particles, const ResolvedSizes& o
   const std::vector<Members> levels = sort_into_levels(own);
   RaycastField field = level_of(particles, own, colours, levels.front());
   for (std::size_t k = 1; k < levels.size(); ++k) field.coarser.push_back(level_of(particles, own, colours, levels[k]));
+  for (const RaycastField& level : field.coarser)
+    field.least_spacing = std::min(field.least_spacing, level.least_spacing);
   field.step = field.options.step * *std::min_element(own.smoothing_length.begin(), own.smoothing_length.end());
   return field;
 }
