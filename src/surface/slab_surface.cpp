@@ -259,6 +259,7 @@ std::uint64_t slab_bytes(int slabs, std::uint64_t count, const Bounds& bounds, c
     return std::max(e.build_bytes, e.kept_bytes + e.view_bytes) + particles * colour;
   };
   if (slabs <= 1) return held(whole, count);
+  const std::uint64_t own_buffers = estimate_raycast(0, bounds, options, pixels).view_bytes;  // the composed picture
   std::uint64_t most = 0;
   const vec3 extent = bounds.extent();
   for (int axis = 0; axis < 3; ++axis) {
@@ -270,7 +271,7 @@ std::uint64_t slab_bytes(int slabs, std::uint64_t count, const Bounds& bounds, c
     slab.high[axis] = slab.low[axis] + static_cast<float>(part) * extent[axis];
     const auto in_slab = static_cast<std::uint64_t>(part * static_cast<double>(count)) + 1;
     const std::uint64_t copied = in_slab * (3 * sizeof(float) + colour);
-    most = std::max(most, held(estimate_raycast(in_slab, slab, options, pixels), in_slab) + copied + whole.view_bytes);
+    most = std::max(most, held(estimate_raycast(in_slab, slab, options, pixels), in_slab) + copied + own_buffers);
   }
   return most;
 }
