@@ -5,11 +5,13 @@
 
 namespace meniscus {
 
-/// Particles that are looked at together: 256 that follow each other in the given order.
+/// Particles that are counted together: 256 that follow each other in the given order.
 constexpr std::size_t kBandPiece = 256;
+/// Particles that share a box: few, so that the boxes of a cloud in rows seldom reach from one row's end to the next.
+constexpr std::size_t kBandBox = 64;
 
-/// Boxes of pieces of particles, m. The last one may hold fewer than 256.
-/// @param boxes  (count + 255) / 256 of them
+/// Boxes of pieces of 64 particles, m. The last one may hold fewer than 64.
+/// @param boxes  (count + 63) / 64 of them
 void find_piece_boxes(const float* x, const float* y, const float* z, std::size_t count, Bounds* boxes);
 
 /// Cells from the low corner of the grid.

@@ -51,8 +51,8 @@ HWY_INLINE hn::Vec<IntTag> cells_of(const float* HWY_RESTRICT values, float low,
 
 void FindPieceBoxes(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
                     std::size_t count, Bounds* HWY_RESTRICT boxes) {
-  for (std::size_t i = 0; i < count; i += kBandPiece, ++boxes) {
-    const std::size_t here = std::min(kBandPiece, count - i);
+  for (std::size_t i = 0; i < count; i += kBandBox, ++boxes) {
+    const std::size_t here = std::min(kBandBox, count - i);
     find_range(x + i, here, boxes->low.x, boxes->high.x);
     find_range(y + i, here, boxes->low.y, boxes->high.y);
     find_range(z + i, here, boxes->low.z, boxes->high.z);

@@ -15,14 +15,14 @@ constexpr std::size_t kLeastPart = 1 << 16;  ///< particles
 constexpr std::size_t kBlocks = 64;          ///< in one piece of work
 
 Bounds bounds_of(const Particles& particles, std::vector<Bounds>& boxes) {
-  constexpr std::size_t kPieces = 256;
+  constexpr std::size_t kPieces = 1024;
   const std::size_t count = particles.size();
-  boxes = std::vector<Bounds>((count + kBandPiece - 1) / kBandPiece);
+  boxes = std::vector<Bounds>((count + kBandBox - 1) / kBandBox);
   std::vector<Bounds> partial((boxes.size() + kPieces - 1) / kPieces);
   parallel_for(boxes.size(), kPieces, [&](std::size_t begin, std::size_t end) {
-    const std::size_t from = begin * kBandPiece;
-    find_piece_boxes(&particles.x[from], &particles.y[from], &particles.z[from],
-                     std::min(end * kBandPiece, count) - from, &boxes[begin]);
+    const std::size_t from = begin * kBandBox;
+    find_piece_boxes(&particles.x[from], &particles.y[from], &particles.z[from], std::min(end * kBandBox, count) - from,
+                     &boxes[begin]);
     for (std::size_t i = begin; i < end; ++i) partial[begin / kPieces].add(boxes[i]);
   });
   Bounds all;
@@ -301,9 +301,9 @@ class BandGrid::Build {
     std::uint32_t* index = g.index_.get();
     parallel_for(parts_.size(), 1, [&](std::size_t p, std::size_t) {
       BandPart& part = parts_[p];
-      for (std::size_t from = part.begin(); from < part.end(); from += kBandPiece) {
-        if (!deep_.empty() && all_deep(boxes_[from / kBandPiece])) continue;
-        part.for_each_particle(particles_, from, std::min(from + kBandPiece, part.end()),
+      for (std::size_t from = part.begin(); from < part.end(); from += kBandBox) {
+        if (!deep_.empty() && all_deep(boxes_[from / kBandBox])) continue;
+        part.for_each_particle(particles_, from, std::min(from + kBandBox, part.end()),
                                [&](std::size_t i, std::uint32_t& next) {
                                  if (next == kLeftOut) return;
                                  const std::uint32_t to = next++;
