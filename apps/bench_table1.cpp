@@ -72,7 +72,7 @@ Timed middle_of(std::vector<Timed> runs) {
 
 /// Fewer runs of what takes long: one of the largest of the table.
 int repeats_of(std::size_t particles, int repeat) {
-  constexpr double kParticles = 40e6;
+  constexpr double kParticles = 24e6;
   return std::clamp(static_cast<int>(std::ceil(repeat * kParticles / static_cast<double>(particles))), 1, repeat);
 }
 
