@@ -75,15 +75,17 @@ class Differ {
          const SceneBuffers* solids, float spacing)
       : view_(view), buffers_(buffers), visible_(visible), solids_(solids), spacing_(spacing) {}
 
-  bool operator()(std::size_t a, std::size_t b, vec3 direction) const {
+  bool operator()(std::size_t a, std::size_t b) const {
     const bool water_a = visible_[a] != 0, water_b = visible_[b] != 0;
     if (water_a != water_b) return true;
-    if (!water_a) return solids_ && solids_differ(a, b, direction);
+    if (!water_a) return solids_ && solids_differ(a, b);
     const float depth_a = buffers_.depth[a], depth_b = buffers_.depth[b];
     float slope = 0;  // change of depth over the width of a pixel on the flatter-seen of both surfaces
     if (!buffers_.normal.empty()) {
       const vec3 normal_a = buffers_.normal[a], normal_b = buffers_.normal[b];
       if (glm::dot(normal_a, normal_b) < kFoldCosine) return true;
+      if (std::abs(depth_a - depth_b) <= 2 * spacing_) return false;  // whatever the slope is: as nearly everywhere
+      const vec3 direction = direction_of(a);
       const float cosine =
           std::max(0.1f, std::min(std::abs(glm::dot(normal_a, direction)), std::abs(glm::dot(normal_b, direction))));
       slope = std::sqrt(1 - std::min(cosine * cosine, 1.0f)) / cosine;
@@ -93,8 +95,13 @@ class Differ {
   }
 
  private:
+  vec3 direction_of(std::size_t i) const {
+    const auto width = static_cast<std::size_t>(visible_.width());
+    return view_.ray({static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f}).direction;
+  }
+
   /// Edges and outlines of solids, and where they meet.
-  bool solids_differ(std::size_t a, std::size_t b, vec3 direction) const {
+  bool solids_differ(std::size_t a, std::size_t b) const {
     const float depth_a = solids_->depth[a], depth_b = solids_->depth[b];
     const bool far_a = depth_a == std::numeric_limits<float>::infinity();
     const bool far_b = depth_b == std::numeric_limits<float>::infinity();
@@ -102,8 +109,10 @@ class Differ {
     const vec3 normal = solids_->normal[a];
     if (glm::dot(normal, solids_->normal[b]) < kFoldCosine) return true;
     // Whether b lies on the plane through a, as far as a pixel can tell.
-    const float cosine = std::max(0.02f, std::abs(glm::dot(normal, direction)));
-    return std::abs(depth_a - depth_b) > 4 * view_.pixel_size(std::min(depth_a, depth_b)) / cosine;
+    const float apart = std::abs(depth_a - depth_b), allowed = 4 * view_.pixel_size(std::min(depth_a, depth_b));
+    if (apart <= allowed) return false;
+    const float cosine = std::max(0.02f, std::abs(glm::dot(normal, direction_of(a))));
+    return apart > allowed / cosine;
   }
 
   const View& view_;
@@ -123,11 +132,19 @@ std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuff
   Image<std::uint8_t> marked(coverage.width(), coverage.height());
   Image<std::uint8_t> visible(coverage.width(), coverage.height());
   parallel_for(height, 16, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::size_t> wet;
+    std::vector<Ray> rays;
     for (std::size_t i = begin * width; i < end * width; ++i) {
       if (!(coverage[i] > 0)) continue;
-      const Ray ray = view.ray({static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f});
-      visible[i] =
-          buffers.eye_in_water || (solids ? solids->depth[i] : scene.distance(ray)) >= buffers.depth[i] ? 1 : 0;
+      wet.push_back(i);
+      if (!buffers.eye_in_water && !solids)
+        rays.push_back(view.ray({static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f}));
+    }
+    std::vector<float> distances(rays.size());
+    if (!rays.empty()) scene.distances(rays, distances);
+    for (std::size_t k = 0; k < wet.size(); ++k) {
+      const std::size_t i = wet[k];
+      visible[i] = buffers.eye_in_water || (solids ? solids->depth[i] : distances[k]) >= buffers.depth[i] ? 1 : 0;
     }
   });
   const Differ differ(view, buffers, visible, solids, spacing);
@@ -136,9 +153,8 @@ std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuff
     for (std::size_t y = begin; y < end; ++y)
       for (std::size_t x = 0; x < width; ++x) {
         const std::size_t i = y * width + x;
-        const vec3 direction = view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}).direction;
-        marked[i] = (x > 0 && differ(i, i - 1, direction)) || (x + 1 < width && differ(i, i + 1, direction)) ||
-                    (y > 0 && differ(i, i - width, direction)) || (y + 1 < height && differ(i, i + width, direction));
+        marked[i] = (x > 0 && differ(i, i - 1)) || (x + 1 < width && differ(i, i + 1)) ||
+                    (y > 0 && differ(i, i - width)) || (y + 1 < height && differ(i, i + width));
       }
   });
   std::vector<std::uint32_t> pixels;
