@@ -48,7 +48,9 @@ HWY_INLINE LeastEigenV least_eigenvector(Symmetric3V c) {
     const Vec bend = hn::MulSub(hn::Set(d, 6.0f), least, two);
     const Vec root =
         hn::Sqrt(hn::Max(hn::Mul(two, hn::MulSub(hn::Mul(two, slope), slope, hn::Mul(three, hn::Mul(f, bend)))), zero));
-    least = hn::NegMulAdd(three, hn::Div(f, hn::Max(hn::Add(slope, root), hn::Set(d, 1e-20f))), least);
+    // Where two roots meet the slope vanishes and f is rounding: steps stay small, and between the bounds.
+    const Vec step = hn::Div(f, hn::Max(hn::Add(slope, root), hn::Set(d, 1e-5f)));
+    least = hn::Min(hn::Max(hn::NegMulAdd(three, step, least), zero), hn::Set(d, 1.0f / 3.0f));
   }
   const Vec rest = hn::Sub(one, least), product = hn::NegMulAdd(least, rest, c1);
   LeastEigenV result;
@@ -86,6 +88,15 @@ struct MomentSums {
   Symmetric3V squares;
 };
 
+/// 1 / sqrt(v) for weights: to 2^-14 where one instruction gives that, which turns normals by less than 1e-4.
+HWY_INLINE Vec weight_root(Vec v) {
+#if HWY_TARGET <= HWY_AVX3
+  return hn::ApproximateReciprocalSqrt(v);
+#else
+  return reciprocal_root(v);
+#endif
+}
+
 /// Adds a list's particles to the sums at points `p`. With sizes, a particle counts by its volume s_j^3 and to its
 /// own radius R_j.
 template <bool kSizes>
@@ -100,7 +111,7 @@ HWY_INLINE void add_moments(const MomentList& list, Vec3V p, MomentSums& sums) {
     Vec q2 = hn::MulAdd(twice.x, x, hn::MulAdd(twice.y, y, hn::MulAdd(twice.z, z, hn::Add(p2, of(MomentList::size2)))));
     if (kSizes) q2 = hn::Mul(q2, of(MomentList::per2));
     q2 = hn::Min(hn::Max(q2, least), one);
-    const Vec per_q = reciprocal_root(q2);
+    const Vec per_q = weight_root(q2);
     const Vec q = hn::Mul(q2, per_q);
     // Eq. 2 with the spiky kernel: the gradient's size is proportional to (1 - q)^2.
     const Vec rest = hn::Max(hn::Sub(one, q), zero);
@@ -150,7 +161,10 @@ HWY_INLINE std::size_t fill_moments(const PacketList& list, const MomentPoints& 
     const Vec y = hn::Mul(hn::Sub(hn::LoadU(d, list.y.data() + first), origin.y), per_radius);
     const Vec z = hn::Mul(hn::Sub(hn::LoadU(d, list.z.data() + first), origin.z), per_radius);
     const Vec3V off{outside(x, low.x, high.x), outside(y, low.y, high.y), outside(z, low.z, high.z)};
-    const auto near = hn::And(hn::Lt(dot(off, off), one), hn::FirstN(d, list.count - first));
+    Vec per = one;
+    if (kSizes) per = hn::Div(hn::LoadU(d, list.per_normal_radius.data() + first), per_radius);
+    const Vec per2 = hn::Mul(per, per);
+    const auto near = hn::And(hn::Lt(hn::Mul(dot(off, off), per2), one), hn::FirstN(d, list.count - first));
     const Vec squares[] = {x,
                            y,
                            z,
@@ -164,8 +178,6 @@ HWY_INLINE std::size_t fill_moments(const PacketList& list, const MomentPoints& 
     for (int a = 0; a < MomentList::per2; ++a)
       hn::StoreU(hn::Compress(squares[a], near), d, moments.values[a] + moments.count);
     if (kSizes) {
-      const Vec per = hn::Div(hn::LoadU(d, list.per_normal_radius.data() + first), per_radius);
-      const Vec per2 = hn::Mul(per, per);
       hn::StoreU(hn::Compress(per2, near), d, moments.values[MomentList::per2] + moments.count);
       hn::StoreU(hn::Compress(hn::Div(one, hn::Mul(per2, per)), near), d,
                  moments.values[MomentList::volume] + moments.count);
@@ -212,7 +224,9 @@ HWY_INLINE Vec3V blended_normal(const RaycastOptions& options, const MomentSums&
                 hn::NegMulAdd(mean.x, mean.z, hn::Mul(sums.squares.xz, per_weight)),
                 hn::NegMulAdd(mean.y, mean.z, hn::Mul(sums.squares.yz, per_weight))};
   const Vec trace = hn::Add(c.xx, hn::Add(c.yy, c.zz));
-  const Vec per_trace = hn::Div(one, hn::Max(trace, hn::Set(d, 1e-12f)));
+  // Neighbours in one place have no plane; what is left of their trace is rounding.
+  const auto spread = hn::Gt(trace, hn::Set(d, 1e-5f));
+  const Vec per_trace = hn::IfThenElseZero(spread, hn::Div(one, hn::Max(trace, hn::Set(d, 1e-5f))));
   for (Vec* entry : {&c.xx, &c.yy, &c.zz, &c.xy, &c.xz, &c.yz}) *entry = hn::Mul(*entry, per_trace);
   const LeastEigenV eigen = least_eigenvector(c);
   // The eigenvector's sign is open: take the side of the gradient.

@@ -1,19 +1,22 @@
 #include "surface/picture_normals.h"
 
+#include <algorithm>
+
 #include "surface/picture_blocks.h"
+#include "surface/picture_normals_simd.h"
 
 namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-void normals_of_block(const RaycastField& field, const View& view, const Block& block, SurfaceBuffers& buffers) {
-  thread_local PacketList list;
+/// Lanes of a block with surface; `at` and `towards` are filled, free lanes with copies of one that is not.
+PacketMask points_of_block(const View& view, const Block& block, const SurfaceBuffers& buffers, PacketPoints& points,
+                           PacketPoints& towards) {
   PacketMask mask = 0;
   for (int l = 0; l < kPacket; ++l)
     if (((block.mask >> l) & 1u) && buffers.depth[block.targets[l]] < kInfinity) mask |= 1u << l;
-  if (mask == 0) return;
-  PacketPoints points, towards, normals;
+  if (mask == 0) return 0;
   for (int l = 0; l < kPacket; ++l) {
     const int lane = (mask >> l) & 1u ? l : __builtin_ctz(mask);
     const Ray ray = view.ray(block.points[lane]);
@@ -25,6 +28,14 @@ void normals_of_block(const RaycastField& field, const View& view, const Block& 
     towards.y[l] = -ray.direction.y;
     towards.z[l] = -ray.direction.z;
   }
+  return mask;
+}
+
+void normals_of_block(const RaycastField& field, const View& view, const Block& block, SurfaceBuffers& buffers) {
+  thread_local PacketList list;
+  PacketPoints points, towards, normals;
+  const PacketMask mask = points_of_block(view, block, buffers, points, towards);
+  if (mask == 0) return;
   normals_packet(field, points, mask, towards, list, normals);
   for (int l = 0; l < kPacket; ++l)
     if ((mask >> l) & 1u) {
@@ -33,12 +44,99 @@ void normals_of_block(const RaycastField& field, const View& view, const Block& 
       buffers.normal[block.targets[l]] =
           cut ? vec3{towards.x[l], towards.y[l], towards.z[l]} : vec3{normals.x[l], normals.y[l], normals.z[l]};
     }
-  if (!field.has_colours()) return;
-  PacketPoints colours;
+}
+
+void colours_of_block(const RaycastField& field, const View& view, const Block& block, SurfaceBuffers& buffers) {
+  thread_local PacketList list;
+  PacketPoints points, towards, colours;
+  const PacketMask mask = points_of_block(view, block, buffers, points, towards);
+  if (mask == 0) return;
   colours_packet(field, points, mask, list, colours);
   for (int l = 0; l < kPacket; ++l)
     if ((mask >> l) & 1u) buffers.colour[block.targets[l]] = {colours.x[l], colours.y[l], colours.z[l]};
 }
+
+/// Whole pictures: where a spacing is many pixels wide, normals of every second pixel of every second row first, then
+/// means of those between them, and once more the sums wherever these are not alike.
+class PictureNormals {
+ public:
+  PictureNormals(const RaycastField& field, const View& view, SurfaceBuffers& buffers)
+      : field_(field),
+        view_(view),
+        buffers_(buffers),
+        known_(known_normals(view)),
+        tiles_x_((view.width + kNormalTileWidth - 1) / kNormalTileWidth),
+        tiles_y_((view.height + kNormalTileHeight - 1) / kNormalTileHeight),
+        sparse_(static_cast<std::size_t>(tiles_x_ * tiles_y_), 0) {}
+
+  void run() {
+    for_each_tile([&](std::size_t tile, int x0, int y0) { find(tile, x0, y0); });
+    for_each_tile([&](std::size_t tile, int x0, int y0) {
+      if (sparse_[tile]) complete(x0, y0);
+    });
+  }
+
+ private:
+  template <class Visit>
+  void for_each_tile(Visit visit) {
+    parallel_for(sparse_.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t tile = begin; tile < end; ++tile)
+        visit(tile, static_cast<int>(tile) % tiles_x_ * kNormalTileWidth,
+              static_cast<int>(tile) / tiles_x_ * kNormalTileHeight);
+    });
+  }
+
+  /// Whether a spacing is wide enough in this tile for normals to be interpolated.
+  bool is_sparse(int x0, int y0) const {
+    if (view_.projection == Projection::cube) return false;  // a tile may reach over the edge of a face
+    float sum = 0, count = 0;
+    for (int y = y0; y < std::min(y0 + kNormalTileHeight, view_.height); y += 4)
+      for (int x = x0; x < std::min(x0 + kNormalTileWidth, view_.width); x += 4)
+        if (buffers_.depth(x, y) < kInfinity) sum += buffers_.depth(x, y), count += 1;
+    return count > 0 && field_.options.spacing > kLeastInterpolated * view_.pixel_size(sum / count);
+  }
+
+  void find(std::size_t tile, int x0, int y0) {
+    sparse_[tile] = is_sparse(x0, y0);
+    const int step = sparse_[tile] ? 2 : 1, side = 4 * step, list = 2 * side;
+    // Squares of 8 x 8 share a list of particles; their quarters are packets.
+    thread_local std::vector<Pixel> pixels;
+    const int x1 = std::min(x0 + kNormalTileWidth, view_.width), y1 = std::min(y0 + kNormalTileHeight, view_.height);
+    for (int ly = y0; ly < y1; ly += list)
+      for (int lx = x0; lx < x1; lx += list) {
+        pixels.clear();
+        for (int by = ly; by < ly + list; by += side)
+          for (int bx = lx; bx < lx + list; bx += side)
+            for (int y = by; y < std::min(by + side, y1); y += step)
+              for (int x = bx; x < std::min(bx + side, x1); x += step) pixels.push_back({x, y});
+        normals_of_pixels(field_, view_, pixels, buffers_);
+      }
+    for (int y = y0; y < y1; y += 2)
+      for (int x = x0; x < x1; x += 2) known_(x / 2, y / 2) = buffers_.normal(x, y);
+  }
+
+  void complete(int x0, int y0) {
+    thread_local std::vector<Pixel> left;
+    left.clear();
+    interpolate_normals(known_, x0, y0, kDepthsAlike * field_.options.spacing, buffers_, left);
+    // By squares of 8 x 8, which share a list, and in these by squares of 4 x 4.
+    const auto place = [](Pixel p) {
+      return ((std::int64_t{p.y / 8} * 65536 + p.x / 8) * 4 + (p.y / 4 % 2) * 2 + p.x / 4 % 2);
+    };
+    std::stable_sort(left.begin(), left.end(), [&](Pixel a, Pixel b) { return place(a) < place(b); });
+    for (std::size_t first = 0, last = 0; first < left.size(); first = last) {
+      while (last < left.size() && place(left[last]) / 4 == place(left[first]) / 4) ++last;
+      normals_of_pixels(field_, view_, std::span(left).subspan(first, last - first), buffers_);
+    }
+  }
+
+  const RaycastField& field_;
+  const View& view_;
+  SurfaceBuffers& buffers_;
+  Image<vec3> known_;
+  int tiles_x_, tiles_y_;
+  std::vector<std::uint8_t> sparse_;
+};
 
 }  // namespace
 
@@ -46,8 +144,13 @@ void find_picture_normals(const RaycastField& field, const View& view, std::span
                           SurfaceBuffers& buffers) {
   const int width = buffers.depth.width(), height = buffers.depth.height();
   buffers.normal = Image<vec3>(width, height, vec3{0});
-  if (field.has_colours()) buffers.colour = Image<vec3>(width, height, vec3{0});
-  for_each_block(view, points, [&](const Block& block) { normals_of_block(field, view, block, buffers); });
+  if (points.empty())
+    PictureNormals(field, view, buffers).run();
+  else
+    for_each_block(view, points, [&](const Block& block) { normals_of_block(field, view, block, buffers); });
+  if (!field.has_colours()) return;
+  buffers.colour = Image<vec3>(width, height, vec3{0});
+  for_each_block(view, points, [&](const Block& block) { colours_of_block(field, view, block, buffers); });
 }
 
 }  // namespace meniscus
