@@ -51,7 +51,7 @@ class March {
       gather_around(
           group, [&](int l) { return std::max(at_[l] - 1.5f * field_.step, entry_[l]); },
           [&](int l) { return std::min(at_[l] + ahead, exit_[l]); });
-      if (list_.count == 0 && sign_ > 0)
+      if (list_.count == 0 && sign_ > 0 && !list_.near_full)
         skip(group);
       else
         sweep(group, depth);

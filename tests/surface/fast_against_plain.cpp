@@ -130,9 +130,12 @@ TEST(CullInterior, SeesWhatLiesBehindGapsThatCountsOfParticlesDoNotShow) {
   int amidst = 0;
   for_each_hit(view, b, [&](int, int, const Ray&, vec3 point) { amidst += point.z < (2 * kCells - 3) * kSpacing; });
   EXPECT_GT(amidst, 100);
-  const Difference d = difference(b, a);
-  EXPECT_EQ(d.mismatch, 0.0) << d;
-  EXPECT_LT(d.depth_p99, 0.01) << d;
+  // Particles that are left out count as full cells: no ray that would have met one gets through, or meets it later.
+  for (std::size_t i = 0; i < b.depth.size(); ++i) {
+    if (b.depth[i] < 1e9f) {
+      EXPECT_LT(a.depth[i], b.depth[i] + 0.05f * kSpacing) << i;
+    }
+  }
 }
 
 TEST(CullInterior, LosesNoWaterFromAnyDirection) {
