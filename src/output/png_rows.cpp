@@ -58,7 +58,7 @@ unsigned char paeth(int left, int above, int corner) {
   const int to_left = std::abs(above - corner), to_above = std::abs(left - corner),
             to_corner = std::abs(left + above - 2 * corner);
   const int other = to_above <= to_corner ? above : corner;
-  return static_cast<unsigned char>((to_left <= to_above) & (to_left <= to_corner) ? left : other);
+  return static_cast<unsigned char>(((to_left <= to_above) & (to_left <= to_corner)) ? left : other);
 }
 
 /// A row by each of PNG's filters.
