@@ -6,7 +6,7 @@ namespace meniscus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kWidestLevel = 1.0f;    ///< spacings between known pixels
+constexpr float kWidestLevel = 0.6f;    ///< spacings between known pixels
 constexpr float kClose = 0.4f;          ///< spacings between known pixels, for interpolation to do
 constexpr float kSmooth = 0.1f;         ///< spacings of second differences, up to which it does
 constexpr float kGuess = 1.0f;          ///< the same, for a first guess
