@@ -66,7 +66,9 @@ class GroupInTile {
   HWY_INLINE Vec load(std::span<const float> values, std::size_t at, std::size_t count) const {
     const Tag d;
     if (count == hn::Lanes(d)) return hn::LoadU(d, values.data() + at);
-    return hn::MaskedLoad(hn::FirstN(d, count), d, values.data() + at);
+    alignas(64) float rest[kLanes] = {};  // a masked load may read past the end
+    std::copy_n(values.data() + at, count, rest);
+    return hn::Load(d, rest);
   }
 
   /// Fills candidates_; the bits of those that may change the tile.

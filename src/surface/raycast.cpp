@@ -47,6 +47,7 @@ class RaycastSurface final : public Surface {
       find_masses(field_);
     spheres_ = entry_spheres(field_);
     for (const RaycastField& level : field_.coarser) spheres_.add(entry_spheres(level));
+    groups_ = SphereGroups(spheres());
   }
 
   SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
@@ -109,6 +110,8 @@ class RaycastSurface final : public Surface {
   }
 
  private:
+  Spheres spheres() const { return {spheres_.x, spheres_.y, spheres_.z, spheres_.radius}; }
+
   /// Whether rays of this view start inside the water.
   bool starts_inside(const View& view) const {
     if (view.projection != Projection::perspective || field_.grid.size() == 0) return false;
@@ -123,7 +126,8 @@ class RaycastSurface final : public Surface {
     SurfaceBuffers buffers;
     buffers.eye_in_water = starts_inside(view);
     if (!buffers.eye_in_water) {
-      splat_depth(view, {spheres_.x, spheres_.y, spheres_.z, spheres_.radius}, buffers.entry, buffers.exit);
+      const GroupedSpheres all{spheres(), &groups_};
+      splat_entries(view, {&all, 1}, buffers.entry, buffers.exit);
       start_where_hidden(view, buffers);
       return buffers;
     }
@@ -183,6 +187,7 @@ class RaycastSurface final : public Surface {
 
   RaycastField field_;
   SphereSet spheres_;
+  SphereGroups groups_;
   mutable std::once_flag cells_made_;
   mutable std::optional<MarchCells> cells_;  ///< made when rays are followed for the first time
 };

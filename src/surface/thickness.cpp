@@ -2,8 +2,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "surface/splat.h"
 #include "surface/thickness_filter.h"
+#include "surface/thickness_water.h"
 
 namespace meniscus {
 namespace {
@@ -19,48 +19,60 @@ float between(const Image<float>& coarse, int stride, float x, float y) {
          fv * ((1 - fu) * coarse(x0, y1) + fu * coarse(x1, y1));
 }
 
-}  // namespace
-
-Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view,
-                                std::span<const vec2> points) {
-  const float radius = 1.25f * spacing;  // thickness_radius() of raycast_field.h
-  const float weight = spacing * spacing * spacing / (4.0f / 3.0f * 3.14159265f * radius * radius * radius);
-  // One to two samples a spacing in the middle of the water.
-  const float middle = std::max(glm::dot(grid.bounds().centre() - view.eye, view.forward), spacing);
-  const float spacing_px = spacing / view.pixel_size(middle);
-  const int stride = grid.size() == 0 ? 1 : std::clamp(static_cast<int>(spacing_px / 1.4f), 1, 8);
-  // Particles of deep cells are known by their number only: spread them over the cell.
-  std::vector<float> x(grid.x(), grid.x() + grid.size()), y(grid.y(), grid.y() + grid.size()),
-      z(grid.z(), grid.z() + grid.size());
-  for (int block = 0; block < grid.blocks() && grid.has_deep(); ++block)
-    for (int cell = 0; cell < BandGrid::kCells; ++cell) {
-      if (grid.kinds(block)[cell] != BandGrid::deep) continue;
-      for (std::uint32_t k = 0; k < grid.counts(block)[cell]; ++k) {
-        const vec3 in_cell =
-            vec3(cell % 8, cell / 8 % 8, cell / 64) + 0.25f + 0.5f * vec3(k & 1, k >> 1 & 1, k >> 2 & 1);
-        const vec3 at = grid.low(block) + grid.cell_size() * in_cell;
-        x.push_back(at.x);
-        y.push_back(at.y);
-        z.push_back(at.z);
+/// between() at all pixels.
+Image<float> enlarged(const Image<float>& coarse, int stride, int width, int height) {
+  Image<float> full(width, height);
+  const auto place = [&](int pixel, int count) {
+    return std::clamp((static_cast<float>(pixel) + 0.5f) / static_cast<float>(stride) - 0.5f, 0.0f,
+                      static_cast<float>(count - 1));
+  };
+  std::vector<int> column(static_cast<std::size_t>(width));
+  std::vector<float> fraction(column.size());
+  for (int x = 0; x < width; ++x) {
+    const float u = place(x, coarse.width());
+    column[static_cast<std::size_t>(x)] = static_cast<int>(u);
+    fraction[static_cast<std::size_t>(x)] = u - static_cast<float>(static_cast<int>(u));
+  }
+  parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> row(static_cast<std::size_t>(coarse.width()) + 1);
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      const float v = place(y, coarse.height());
+      const int y0 = static_cast<int>(v), y1 = std::min(y0 + 1, coarse.height() - 1);
+      const float fv = v - static_cast<float>(y0);
+      for (int x = 0; x < coarse.width(); ++x)
+        row[static_cast<std::size_t>(x)] = (1 - fv) * coarse(x, y0) + fv * coarse(x, y1);
+      row.back() = row[row.size() - 2];
+      float* to = full.row(y);
+      for (std::size_t x = 0; x < column.size(); ++x) {
+        const float* from = &row[static_cast<std::size_t>(column[x])];
+        to[x] = (1 - fraction[x]) * from[0] + fraction[x] * from[1];
       }
     }
-  const Image<float> coarse = splat_chords(view, {x, y, z, {&radius, 1}}, weight, stride);
+  });
+  return full;
+}
+
+}  // namespace
+
+Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view, std::span<const vec2> points) {
+  // Three samples in two spacings in the middle of the water.
+  const float middle = std::max(glm::dot(grid.bounds().centre() - view.eye, view.forward), spacing);
+  const float spacing_px = spacing / view.pixel_size(middle);
+  const int stride = grid.blocks() == 0 ? 1 : std::clamp(static_cast<int>(spacing_px / 1.4f + 0.5f), 1, 8);
+  const float spacing_samples = spacing_px / static_cast<float>(stride);
+  const Image<float> sums = summed_water(grid, spacing, SplatCamera(view, stride));
+  // Variance along an axis: that of a sphere's water (radius^2 / 5) less that of the spreading over four samples.
+  const float radius = kThicknessRadius * spacing_samples;
+  const float spread =
+      grid.size() <= kAllSpheres ? 0.0f : std::sqrt(std::max(radius * radius / 5.0f - 1.0f / 6.0f, 0.0f));
   const Image<float> smooth =
-      smoothed_thickness(coarse, std::min(spacing_px / static_cast<float>(stride), 4.0f), spacing);
+      smoothed_thickness(blurred(sums, std::min(spread, 1.0f)), std::min(spacing_samples, 4.0f), spacing);
   if (!points.empty()) {
     Image<float> values(static_cast<int>(points.size()), 1);
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = between(smooth, stride, points[i].x, points[i].y);
     return values;
   }
-  if (stride == 1) return smooth;
-  Image<float> full(view.width, view.height);
-  parallel_for(static_cast<std::size_t>(view.height), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      for (int x = 0; x < view.width; ++x)
-        full(x, static_cast<int>(y)) =
-            between(smooth, stride, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-  });
-  return full;
+  return stride == 1 ? smooth : enlarged(smooth, stride, view.width, view.height);
 }
 
 Image<float> sampled_picture(const Image<float>& picture, std::span<const vec2> points) {

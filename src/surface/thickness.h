@@ -1,15 +1,19 @@
-/// Thickness of the water from one sphere a particle.
+/// Thickness of the water: how much of it each ray runs through.
 #pragma once
 
 #include "particles/band_grid.h"
 
 namespace meniscus {
 
-/// Water along the rays of a perspective or orthographic view at its pixels or at `points`, m: the summed chords of
-/// spheres of radius 1.25 spacings that each count for the water of one particle, smoothed.
+/// Water along the rays of a perspective or orthographic view at its pixels or at `points`, m: what spheres of radius
+/// 1.25 spacings that each count for the water of one particle add up to, smoothed.
+///
+/// Not by one sphere a particle: cells amidst well filled ones are known by the number of their particles alone, whole
+/// blocks of them are one box, and what is small in the picture is a point whose water is spread by the same amount
+/// afterwards. Within a twentieth of the spheres' sums where the water is deeper than four spacings, and the water of
+/// all particles before the eye is kept.
 /// @param spacing  m
-Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view,
-                                std::span<const vec2> points);
+Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view, std::span<const vec2> points);
 
 /// A picture between the centres of its pixels, at `points`.
 Image<float> sampled_picture(const Image<float>& picture, std::span<const vec2> points);

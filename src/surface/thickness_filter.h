@@ -12,4 +12,8 @@ namespace meniscus {
 /// @param spacing  m
 Image<float> smoothed_thickness(const Image<float>& thickness, float sigma, float spacing);
 
+/// A Gaussian along rows, then along columns; beyond the border the picture goes on as within the reach of the weights.
+/// @param sigma  px; none below a fifth of a pixel
+Image<float> blurred(const Image<float>& picture, float sigma);
+
 }  // namespace meniscus

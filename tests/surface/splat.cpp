@@ -177,6 +177,40 @@ TEST(Splat, SamplesChordsAtTheMiddlesOfBlocks) {
     }
 }
 
+TEST(Splat, EntriesAreTheSameWithWhatIsHiddenLeftOutAndExitsNoNearer) {
+  Random random(66);
+  // A wall of many layers, in rows as sorted particles are, and a second set of few large spheres.
+  SphereList wall, large;
+  for (int k = 0; k < 12; ++k)
+    for (int j = 0; j < 60; ++j)
+      for (int i = 0; i < 60; ++i)
+        wall.add(vec3{i, j, k} * 0.05f - vec3{1.5f, 1.5f, 0.0f} + 0.02f * random.in_cube(1),
+                 i == 30 ? 0.0f : random.between(0.05f, 0.06f));
+  for (int n = 0; n < 20; ++n) large.add(random.in_cube(2), 0.2f);
+  SphereList both = wall;
+  for (std::size_t i = 0; i < large.x.size(); ++i) both.add({large.x[i], large.y[i], large.z[i]}, large.radius[i]);
+  const SphereGroups wall_groups(wall.spheres()), large_groups(large.spheres());
+  const std::vector<GroupedSpheres> sets{{wall.spheres(), &wall_groups}, {large.spheres(), &large_groups}};
+  for (const Projection projection : kProjections)
+    for (const vec3 direction : {vec3{0, 0, 1}, vec3{1, 0.4f, 0.5f}, vec3{1, 0.1f, 0.02f}}) {
+      const View view = looking_at(Bounds{vec3{-1.6f}, vec3{1.6f}}, direction, projection, 203, 187);
+      Image<float> entry, exit, exact_entry, exact_exit;
+      splat_depth(view, both.spheres(), exact_entry, exact_exit);
+      splat_entries(view, sets, entry, exit);
+      EXPECT_TRUE(same_bits(entry, exact_entry));
+      for (std::size_t i = 0; i < exit.size(); ++i) {
+        ASSERT_GE(exit[i], exact_exit[i]);
+        ASSERT_EQ(exit[i] > 0.0f, exact_exit[i] > 0.0f);
+      }
+      for (const int threads : {1, 2, 5}) {
+        const ThreadLimit limit(threads);
+        Image<float> same_entry, same_exit;
+        splat_entries(view, sets, same_entry, same_exit);
+        EXPECT_TRUE(same_bits(entry, same_entry) && same_bits(exit, same_exit));
+      }
+    }
+}
+
 TEST(Splat, DrawsNothingOfNothing) {
   const View view = perspective_view({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 1.0f, 10, 7);
   Image<float> entry, exit;

@@ -1,4 +1,5 @@
 // Water along rays [vanDerLaan2009], in metres.
+#include "surface/thickness.h"
 #include "surface/fixtures.h"
 #include "surface/thickness_filter.h"
 
@@ -114,14 +115,46 @@ TEST(Thickness, IsThatOfThePlainSurfaceSmoothedAndTheSameByAllWaysToAskForIt) {
   // The plain surface does not smooth; the width is a spacing in the middle of the water.
   const float spacing_px = kSpacing / view.pixel_size(glm::dot(particles.bounds().centre() - view.eye, view.forward));
   const Image<float> smooth = smoothed_thickness(b, spacing_px, kSpacing);
-  double sum = 0, plain_sum = 0;
+  // Particles a few samples wide are points spread like their spheres: single drops differ a little.
+  double sum = 0, plain_sum = 0, off = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_NEAR(a[i], smooth[i], 0.02f * kSpacing);
+    ASSERT_NEAR(a[i], smooth[i], 0.25f * kSpacing + 0.05f * smooth[i]);
+    off += std::abs(static_cast<double>(a[i]) - smooth[i]);
     sum += a[i];
     plain_sum += b[i];
     ASSERT_NEAR(a[i], d[i], 1e-3f * kSpacing);
   }
   EXPECT_NEAR(sum / plain_sum, 1.0, 0.04);
+  EXPECT_LT(off / sum, 0.02);
+}
+
+TEST(Thickness, OfCountedCellsIsThatOfTheirParticlesForAnyNumberOfThreads) {
+  // A jittered block whose inner cells are known by the numbers of their particles alone.
+  const Particles particles = lattice_box(48, 44, 40, 0.2f);
+  BandGrid::Options banded{2 * kSpacing, 3, 2}, whole{2 * kSpacing, 0, 2};
+  const BandGrid some(particles, banded), all(particles, whole);
+  ASSERT_TRUE(some.has_deep());
+  ASSERT_LT(some.size(), all.size());
+  for (const Projection projection : kProjections)
+    for (const vec3 direction : {vec3{0, 0, 1}, vec3{1, 0.4f, 0.3f}, vec3{-1, 1, 1}}) {
+      const View view = looking_at(particles.bounds(), direction, projection, 120, 120);
+      const Image<float> counted = splatted_thickness(some, kSpacing, view, {}),
+                         summed = splatted_thickness(all, kSpacing, view, {});
+      std::vector<double> off;
+      double counted_sum = 0, sum = 0;
+      for (std::size_t i = 0; i < summed.size(); ++i) {
+        counted_sum += counted[i];
+        sum += summed[i];
+        if (summed[i] > 4 * kSpacing) off.push_back(std::abs(counted[i] / summed[i] - 1));
+      }
+      ASSERT_GT(off.size(), 1000u);
+      EXPECT_LT(quantile(off, 0.95), 0.1);
+      EXPECT_NEAR(counted_sum / sum, 1.0, 0.01);
+      for (const int threads : {1, 2, 5}) {
+        const ThreadLimit limit(threads);
+        EXPECT_TRUE(same_bits(splatted_thickness(some, kSpacing, view, {}), counted));
+      }
+    }
 }
 
 TEST(SmoothedThickness, TakesRipplesAndLeavesOutlines) {

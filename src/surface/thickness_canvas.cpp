@@ -1,0 +1,205 @@
+#include "surface/thickness_canvas.h"
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "surface/thickness_canvas.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace meniscus {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Tag = HWY_CAPPED(float, 16);
+using Vec = hn::Vec<Tag>;
+
+void points(const SplatCamera& camera, const float* x, const float* y, const float* z, float volume, std::size_t count,
+            ThicknessCanvas& canvas) {
+  const Tag d;
+  const hn::RebindToSigned<Tag> di;
+  const std::size_t lanes = hn::Lanes(d);
+  alignas(64) std::int32_t at[16];
+  alignas(64) float v00[16], v01[16], v10[16], v11[16];
+  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const Vec per_du = hn::Set(d, 1.0f / camera.du), per_dv = hn::Set(d, 1.0f / camera.dv);
+  const Vec per_area = hn::Set(d, 1.0f / (camera.du * camera.du));
+  const Vec first_x = hn::Set(d, camera.u0 / camera.du + static_cast<float>(canvas.rect.x0)),
+            first_y = hn::Set(d, camera.v0 / camera.dv + static_cast<float>(canvas.rect.y0));
+  const Vec last_x = hn::Set(d, static_cast<float>(canvas.width())),
+            last_y = hn::Set(d, static_cast<float>(canvas.height()));
+  float* values = canvas.values.data();
+  for (std::size_t begin = 0; begin < count; begin += lanes) {
+    const std::size_t here = std::min(lanes, count - begin);
+    const auto valid = hn::FirstN(d, here);
+    const auto load = [&](const float* from) {
+      return hn::LoadU(d, from + begin);  // there is room past the end
+    };
+    const Vec ox = hn::Sub(load(x), hn::Set(d, camera.eye.x)), oy = hn::Sub(load(y), hn::Set(d, camera.eye.y)),
+              oz = hn::Sub(load(z), hn::Set(d, camera.eye.z));
+    const auto along = [&](vec3 axis) {
+      return hn::MulAdd(ox, hn::Set(d, axis.x), hn::MulAdd(oy, hn::Set(d, axis.y), hn::Mul(oz, hn::Set(d, axis.z))));
+    };
+    Vec u = along(camera.right), v = along(camera.up);
+    Vec water = hn::Mul(hn::Set(d, volume), per_area);
+    const Vec depth = along(camera.forward);
+    if (camera.perspective) {
+      // A sample's beam has the area du^2 z^2 / |(u, v, 1)| across the ray.
+      const Vec per_z = hn::Div(one, depth);
+      u = hn::Mul(u, per_z);
+      v = hn::Mul(v, per_z);
+      const Vec length = hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one)));
+      water = hn::Mul(hn::Mul(water, length), hn::Mul(per_z, per_z));
+    }
+    water = hn::IfThenElseZero(hn::And(valid, hn::Gt(depth, zero)), water);
+    // Sample coordinates in the canvas, from -1 to its size: what falls beside goes to its rim.
+    const Vec px = hn::MulSub(u, per_du, first_x), py = hn::MulSub(v, per_dv, first_y);
+    const Vec ix = hn::Floor(px), iy = hn::Floor(py);
+    const auto within = hn::And(hn::And(hn::Ge(ix, hn::Set(d, -1.0f)), hn::Lt(ix, last_x)),
+                                hn::And(hn::Ge(iy, hn::Set(d, -1.0f)), hn::Lt(iy, last_y)));
+    water = hn::IfThenElseZero(within, water);
+    const Vec fx = hn::Sub(px, ix), fy = hn::Sub(py, iy);
+    const Vec lower = hn::Mul(water, fy), upper = hn::Sub(water, lower);
+    const Vec upper_right = hn::Mul(upper, fx), lower_right = hn::Mul(lower, fx);
+    hn::Store(hn::Sub(upper, upper_right), d, v00);
+    hn::Store(upper_right, d, v01);
+    hn::Store(hn::Sub(lower, lower_right), d, v10);
+    hn::Store(lower_right, d, v11);
+    const auto column = hn::ConvertTo(di, hn::IfThenElseZero(within, hn::Add(ix, one)));
+    const auto row = hn::ConvertTo(di, hn::IfThenElseZero(within, hn::Add(iy, one)));
+    hn::Store(hn::Add(hn::Mul(row, hn::Set(di, canvas.pitch)), column), di, at);
+    for (std::size_t l = 0; l < here; ++l) {
+      float* to = values + at[l];
+      to[0] += v00[l];
+      to[1] += v01[l];
+      to[canvas.pitch] += v10[l];
+      to[canvas.pitch + 1] += v11[l];
+    }
+  }
+}
+
+/// Calls visit(values, u, v, valid lanes) for vectors of the samples of the rectangle that the canvas holds.
+template <class Visit>
+HWY_INLINE void for_each_vector(const SplatCamera& camera, const SampleRect& rect, ThicknessCanvas& canvas,
+                                Visit visit) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int x0 = std::max(rect.x0, canvas.rect.x0), x1 = std::min(rect.x1, canvas.rect.x1);
+  const int y0 = std::max(rect.y0, canvas.rect.y0), y1 = std::min(rect.y1, canvas.rect.y1);
+  for (int y = y0; y <= y1; ++y) {
+    const Vec v = hn::Set(d, camera.v0 + static_cast<float>(y) * camera.dv);
+    float* row = canvas.row(y - canvas.rect.y0) - canvas.rect.x0;
+    for (int x = x0; x <= x1; x += lanes) {
+      const Vec u = hn::MulAdd(hn::Iota(d, static_cast<float>(x)), hn::Set(d, camera.du), hn::Set(d, camera.u0));
+      visit(row + x, u, v, hn::FirstN(d, static_cast<std::size_t>(std::min(lanes, x1 - x + 1))));
+    }
+  }
+}
+
+template <class Valid>
+HWY_INLINE void add_to(float* values, Vec water, Valid valid) {
+  const Tag d;
+  // Not masked: the canvas is one thread's, and there is room past its end.
+  hn::StoreU(hn::Add(hn::LoadU(d, values), hn::IfThenElseZero(valid, water)), d, values);
+}
+
+void sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
+  const Tag d;
+  const vec3 c = camera.to_camera(centre);
+  const SampleRect rect = samples_of(camera, {centre, vec3{radius}});
+  if (rect.empty()) return;
+  const Vec cx = hn::Set(d, c.x), cy = hn::Set(d, c.y), cz = hn::Set(d, c.z), zero = hn::Zero(d);
+  for_each_vector(camera, rect, canvas, [&](float* values, Vec u, Vec v, auto valid) {
+    Vec middle = cz, off_axis2;
+    if (camera.perspective) {
+      const Vec one = hn::Set(d, 1.0f), dz = hn::Div(one, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
+      const Vec dx = hn::Mul(u, dz), dy = hn::Mul(v, dz);
+      middle = hn::MulAdd(cx, dx, hn::MulAdd(cy, dy, hn::Mul(cz, dz)));
+      const Vec ox = hn::NegMulAdd(middle, dx, cx), oy = hn::NegMulAdd(middle, dy, cy),
+                oz = hn::NegMulAdd(middle, dz, cz);
+      off_axis2 = hn::MulAdd(ox, ox, hn::MulAdd(oy, oy, hn::Mul(oz, oz)));
+    } else {
+      const Vec ox = hn::Sub(cx, u), oy = hn::Sub(cy, v);
+      off_axis2 = hn::MulAdd(ox, ox, hn::Mul(oy, oy));
+    }
+    const Vec half = hn::Sqrt(hn::Max(hn::Sub(hn::Set(d, radius * radius), off_axis2), zero));
+    const Vec chord = hn::Sub(hn::Max(hn::Add(middle, half), zero), hn::Max(hn::Sub(middle, half), zero));
+    add_to(values, hn::Mul(chord, hn::Set(d, weight)), valid);
+  });
+}
+
+void box(const SplatCamera& camera, const SplatBox& box, float weight, ThicknessCanvas& canvas) {
+  const Tag d;
+  const SampleRect rect = samples_of(camera, box);
+  if (rect.empty()) return;
+  const Vec zero = hn::Zero(d), far = hn::Set(d, 1e30f);
+  const vec3 offset = box.middle - camera.eye;
+  for_each_vector(camera, rect, canvas, [&](float* values, Vec u, Vec v, auto valid) {
+    // By the parameter t of origin + t direction, where direction is not a unit vector: forward goes by one.
+    Vec low = zero, high = far;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec across = hn::MulAdd(u, hn::Set(d, camera.right[axis]), hn::Mul(v, hn::Set(d, camera.up[axis])));
+      const Vec forward = hn::Set(d, camera.forward[axis]);
+      Vec direction = camera.perspective ? hn::Add(across, forward) : forward;
+      const Vec middle = camera.perspective ? hn::Set(d, offset[axis]) : hn::Sub(hn::Set(d, offset[axis]), across);
+      // A ray along the box's side: any steep slope tells inside from outside.
+      direction = hn::IfThenElse(hn::Lt(hn::Abs(direction), hn::Set(d, 1e-12f)), hn::Set(d, 1e-12f), direction);
+      const Vec slope = hn::Div(hn::Set(d, 1.0f), direction);
+      const Vec at = hn::Mul(middle, slope), reach = hn::Abs(hn::Mul(hn::Set(d, box.half[axis]), slope));
+      low = hn::Max(low, hn::Sub(at, reach));
+      high = hn::Min(high, hn::Add(at, reach));
+    }
+    Vec chord = hn::Mul(hn::Max(hn::Sub(high, low), zero), hn::Set(d, weight));
+    if (camera.perspective) {
+      const Vec one = hn::Set(d, 1.0f);
+      chord = hn::Mul(chord, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
+    }
+    add_to(values, chord, valid);
+  });
+}
+
+}  // namespace
+
+void AddPoints(const SplatCamera& camera, const float* x, const float* y, const float* z, float volume,
+               std::size_t count, ThicknessCanvas& canvas) {
+  points(camera, x, y, z, volume, count, canvas);
+}
+void AddSphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
+  sphere(camera, centre, radius, weight, canvas);
+}
+void AddBox(const SplatCamera& camera, const SplatBox& one, float weight, ThicknessCanvas& canvas) {
+  box(camera, one, weight, canvas);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace meniscus
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace meniscus {
+
+HWY_EXPORT(AddPoints);
+HWY_EXPORT(AddSphere);
+HWY_EXPORT(AddBox);
+
+void ThicknessCanvas::start(const SampleRect& samples) {
+  rect = samples;
+  if (rect.empty()) return;
+  pitch = width() + 2;
+  values.assign(static_cast<std::size_t>(pitch) * static_cast<std::size_t>(height() + 2) + 16, 0.0f);
+}
+
+void add_points(const SplatCamera& camera, const float* x, const float* y, const float* z, std::size_t count,
+                float volume, ThicknessCanvas& canvas) {
+  HWY_DYNAMIC_DISPATCH(AddPoints)(camera, x, y, z, volume, count, canvas);
+}
+void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
+  HWY_DYNAMIC_DISPATCH(AddSphere)(camera, centre, radius, weight, canvas);
+}
+void add_box(const SplatCamera& camera, const SplatBox& box, float weight, ThicknessCanvas& canvas) {
+  HWY_DYNAMIC_DISPATCH(AddBox)(camera, box, weight, canvas);
+}
+
+}  // namespace meniscus
+#endif

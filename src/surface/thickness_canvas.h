@@ -1,0 +1,35 @@
+/// A rectangle of the picture's samples that water is added to, by instruction set.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "surface/splat_camera.h"
+
+namespace meniscus {
+
+/// Sums of water along the rays of some of a picture's samples, m. One is written by one thread.
+struct ThicknessCanvas {
+  SampleRect rect;            ///< of the samples that it holds
+  int pitch = 0;              ///< values from row to row: one more sample on each side, which takes what falls beside
+  std::vector<float> values;  ///< (height + 2) rows
+
+  void start(const SampleRect& samples);
+  int width() const { return rect.x1 - rect.x0 + 1; }
+  int height() const { return rect.y1 - rect.y0 + 1; }
+  const float* row(int y) const { return values.data() + static_cast<std::ptrdiff_t>(y + 1) * pitch + 1; }
+  float* row(int y) { return values.data() + static_cast<std::ptrdiff_t>(y + 1) * pitch + 1; }
+};
+
+/// Adds `volume` m^3 of water at each of the points, spread over the four samples around it.
+/// @param x, y, z  `count` values, world space, m; none is behind the eye
+void add_points(const SplatCamera& camera, const float* x, const float* y, const float* z, std::size_t count,
+                float volume, ThicknessCanvas& canvas);
+
+/// Adds `weight` times the part of each ray that lies inside the sphere and before the eye.
+void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas);
+
+/// The same for a box along the axes of the world.
+void add_box(const SplatCamera& camera, const SplatBox& box, float weight, ThicknessCanvas& canvas);
+
+}  // namespace meniscus
