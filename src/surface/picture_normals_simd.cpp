@@ -20,6 +20,10 @@ namespace meniscus {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// Between two places lies one whose depth, twice taken, differs from the sum of theirs by less than this share of
+/// their difference (on a ball it is 0.42 at the rim, where normals are 6 degrees apart) and this share of the reach.
+constexpr float kDepthsBent = 0.5f, kDepthsUneven = 0.05f;
+
 /// The points seen at up to kMost pixels, in packets; each packet's free lanes repeat its first.
 class PixelNormals {
  public:
@@ -233,8 +237,15 @@ void InterpolateNormals(const Image<vec3>& known, int x0, int y0, float reach, S
         }
       };
       const auto near = [&](Vec depth, Vec other) { return hn::Lt(hn::Abs(hn::Sub(depth, other)), far); };
+      // A place off the middle of the two has a normal of its own: at rims, where rays graze the water.
+      const auto amidst = [&](Vec depth, Vec at_n, Vec at_m) {
+        const Vec off = hn::Abs(hn::Sub(hn::Add(depth, depth), hn::Add(at_n, at_m)));
+        const Vec slope = hn::Abs(hn::Sub(at_n, at_m));
+        return hn::Lt(off, hn::MulAdd(hn::Set(d, kDepthsBent), slope, hn::Mul(hn::Set(d, kDepthsUneven), far)));
+      };
       const auto between = [&](Vec3V n, Vec at_n, Vec3V m, Vec at_m, Vec depth) {
-        return hn::And(hn::And(near(depth, at_n), near(depth, at_m)), hn::Gt(dot(n, m), alike));
+        return hn::And(hn::And(hn::And(near(depth, at_n), near(depth, at_m)), amidst(depth, at_n, at_m)),
+                       hn::Gt(dot(n, m), alike));
       };
       const Vec3V ab = combined(a, one, b), ce = combined(c, one, e);
       set_mean(ab, right, between(a, at_a, b, at_b, right), 1, 0);

@@ -104,17 +104,32 @@ TEST(LoneParticle, IsARoundDropOfItsOwnVolume) {
         Bounds box;
         box.add(particles.position(0));
         const View view = looking_at(box.grown(kSpacing), {0.3f, 1, 0.5f}, projection, 200, 200);
-        const SurfaceBuffers seen = make_raycast_surface(particles, with)->see(view);
+        const auto surface = make_raycast_surface(particles, with);
+        const SurfaceBuffers seen = surface->see(view);
         const double radius = kDropRadius * kSpacing;
-        double radius_most = 0, radius_mean = 0, normal_most = 0;
+        double radius_most = 0, radius_mean = 0;
+        std::vector<double> normals;
+        std::vector<vec2> points;
         for_each_hit(view, seen, [&](int x, int y, const Ray&, vec3 point) {
           const double off = std::abs(glm::length(glm::dvec3(point - box.low)) - radius) / kSpacing;
           radius_most = std::max(radius_most, off);
           radius_mean += off / static_cast<double>(hits(seen));
-          normal_most = std::max(normal_most, degrees_between(seen.normal(x, y), point - box.low));
+          normals.push_back(degrees_between(seen.normal(x, y), point - box.low));
+          points.push_back({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
         });
         EXPECT_LT(radius_mean, 0.004) << surface_tests::name_of(kernel) << " iso " << iso;
         EXPECT_LT(radius_most, 0.05) << surface_tests::name_of(kernel) << " iso " << iso;
+        // In pictures normals are interpolated where they turn by less than 6 degrees in two pixels.
+        EXPECT_LT(quantile(normals, 0.99), 0.5) << surface_tests::name_of(kernel) << " iso " << iso;
+        EXPECT_LT(quantile(normals, 1), 3) << surface_tests::name_of(kernel) << " iso " << iso;
+        const SurfaceBuffers single = surface->see(view, points);
+        double normal_most = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          if (!(single.depth[i] < kInfinity)) continue;
+          const Ray ray = view.ray(points[i]);
+          const vec3 point = ray.origin + single.depth[i] * ray.direction;
+          normal_most = std::max(normal_most, degrees_between(single.normal[i], point - box.low));
+        }
         EXPECT_LT(normal_most, 0.1) << surface_tests::name_of(kernel) << " iso " << iso;
         // A perspective eye sees a ball under the angle asin(radius / distance).
         const double distance = glm::length(glm::dvec3(view.eye) - glm::dvec3(box.low));
