@@ -132,6 +132,7 @@ MarchCells ball_cells(const BandGrid& grid, float radius) {
   // Without masses no cell is inside.
   RaycastField field;
   field.options = options;
+  field.least_spacing = options.spacing;
   field.grid = grid;
   field.mass.assign(grid.size() + BandGrid::kPadding, 0.0f);
   field.entry_radius.assign(grid.size(), radius);
