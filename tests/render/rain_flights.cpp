@@ -49,7 +49,9 @@ TEST(Flights, MeetStillWaterWhenTheyComeToItsLevel) {
       EXPECT_GE(flight.hit, before);
       EXPECT_LE(flight.hit, static_cast<double>(tick + 1) * kTick);
       before = flight.hit;
-      if (flight.target == Flight::Target::water) EXPECT_TRUE(met.emplace(flight.drop.id, flight).second);
+      if (flight.target == Flight::Target::water) {
+        EXPECT_TRUE(met.emplace(flight.drop.id, flight).second);
+      }
     }
   }
   std::size_t expected = 0;
