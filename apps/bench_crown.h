@@ -12,6 +12,8 @@ class CrownLook {
   CrownLook();
   /// Linear radiance of what a surface has seen.
   Image<vec3> shaded(const View& view, const SurfaceBuffers& water, StageTimes* times = nullptr) const;
+  const Material& material() const { return material_; }
+  const Scene& scene() const { return scene_; }
 
  private:
   Material material_;

@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "json.h"
 #include "meniscus/render.h"
+#include "render/antialias.h"
 
 namespace meniscus::apps {
 namespace {
@@ -87,7 +88,42 @@ Image<vec3> difference(const Image<vec3>& a, const Image<vec3>& b) {
   return result;
 }
 
-/// A few frames of one motion, drawn as the program draws them and by many rays a pixel.
+/// What the frames of one motion add up to.
+class Frames {
+ public:
+  void add(Image<vec3> picture, const Image<vec3>& truth) {
+    Image<vec3> error = difference(picture, truth);
+    error_ += sum_of_squares(error);
+    if (count_++ > 0) {
+      change_ += sum_of_squares(difference(picture, picture_before_));
+      error_change_ += sum_of_squares(difference(error, error_before_));
+    }
+    values_ = 3.0 * static_cast<double>(picture.size());
+    picture_before_ = std::move(picture);
+    error_before_ = std::move(error);
+  }
+
+  double change() const { return std::sqrt(change_ / (values_ * (count_ - 1))); }
+  double error() const { return std::sqrt(error_ / (values_ * count_)); }
+  double error_change() const { return std::sqrt(error_change_ / (values_ * (count_ - 1))); }
+
+ private:
+  int count_ = 0;
+  double values_ = 0, change_ = 0, error_ = 0, error_change_ = 0;
+  Image<vec3> picture_before_, error_before_;
+};
+
+/// The picture with its outlines drawn by many rays, as render draws them unless it is told not to.
+Image<vec3> with_outlines(const CrownLook& look, const Surface& surface, const View& view, SurfaceBuffers water,
+                          Image<vec3> radiance) {
+  OpticsInputs optics;
+  optics.options.refraction = RefractionMethod::thickness;
+  const std::vector<std::uint32_t> pixels = silhouette_pixels(view, water, look.scene(), surface.spacing());
+  refine_pixels(surface, view, look.scene(), look.material(), optics, pixels, water, radiance);
+  return radiance;
+}
+
+/// A few frames of one motion, drawn by one ray a pixel, with outlines, and by many rays a pixel.
 Json row_of(const Particles& crown, const TemporalArguments& arguments, bool orbit, float px_per_spacing) {
   const CrownLook look;
   const RaycastOptions options = crown_options(crown);
@@ -97,36 +133,30 @@ Json row_of(const Particles& crown, const TemporalArguments& arguments, bool orb
   const int size = std::max(8, static_cast<int>(std::lround(px_per_spacing * height / options.spacing)));
   std::unique_ptr<Surface> surface;
   if (orbit) surface = make_raycast_surface(crown, options);
-  double change = 0, truth_change = 0, error = 0, error_change = 0;
-  Image<vec3> picture_before, truth_before, error_before;
+  Frames plain, outlined, truths;
   for (int frame = 0; frame < arguments.frames; ++frame) {
     if (!orbit) surface = make_raycast_surface(flowed(crown, static_cast<float>(frame)), options);
     const View view = turned_view(size, orbit ? kOrbitDeg * static_cast<float>(frame) : 0);
     const View fine = view.resized(arguments.rays * size, arguments.rays * size);
-    Image<vec3> picture = displayed(look.shaded(view, surface->see(view)));
-    Image<vec3> truth = displayed(mean_of_squares(look.shaded(fine, surface->see(fine)), arguments.rays));
-    Image<vec3> off = difference(picture, truth);
-    error += sum_of_squares(off);
-    if (frame > 0) {
-      change += sum_of_squares(difference(picture, picture_before));
-      truth_change += sum_of_squares(difference(truth, truth_before));
-      error_change += sum_of_squares(difference(off, error_before));
-    }
-    picture_before = std::move(picture);
-    truth_before = std::move(truth);
-    error_before = std::move(off);
+    const Image<vec3> truth = displayed(mean_of_squares(look.shaded(fine, surface->see(fine)), arguments.rays));
+    SurfaceBuffers water = surface->see(view);
+    Image<vec3> radiance = look.shaded(view, water);
+    plain.add(displayed(radiance), truth);
+    outlined.add(displayed(with_outlines(look, *surface, view, std::move(water), std::move(radiance))), truth);
+    truths.add(truth, truth);
   }
-  const double values = 3.0 * size * size;  // of a picture
-  const auto rms = [&](double sum, int pictures) { return std::sqrt(sum / (values * pictures)); };
-  const double change_rms = rms(change, arguments.frames - 1), truth_rms = rms(truth_change, arguments.frames - 1);
   return {{"motion", orbit ? "orbit" : "flow"},
           {"px_per_spacing", json_of(px_per_spacing)},
           {"size", size},
-          {"change_rms", change_rms},
-          {"truth_change_rms", truth_rms},
-          {"ratio", change_rms / truth_rms},
-          {"error_rms", rms(error, arguments.frames)},
-          {"error_change_rms", rms(error_change, arguments.frames - 1)}};
+          {"change_rms", plain.change()},
+          {"truth_change_rms", truths.change()},
+          {"ratio", plain.change() / truths.change()},
+          {"error_rms", plain.error()},
+          {"error_change_rms", plain.error_change()},
+          {"outlined_change_rms", outlined.change()},
+          {"outlined_ratio", outlined.change() / truths.change()},
+          {"outlined_error_rms", outlined.error()},
+          {"outlined_error_change_rms", outlined.error_change()}};
 }
 
 Json measure(const TemporalArguments& arguments) {
@@ -150,13 +180,16 @@ void print(const Json& json) {
   std::cout << fmt::format("{} particles, {} frames; against {} rays a pixel; in shares of white\n",
                            json["particles"].get<std::size_t>(), json["frames"].get<int>(),
                            json["rays_a_pixel"].get<int>());
-  std::cout << fmt::format("{:<8}{:>12}{:>10}{:>10}{:>8}{:>10}{:>14}\n", "motion", "px a spacing", "change", "truth",
-                           "ratio", "error", "error change");
-  for (const Json& row : json["rows"])
-    std::cout << fmt::format(
-        "{:<8}{:>12.2f}{:>10.4f}{:>10.4f}{:>8.2f}{:>10.4f}{:>14.4f}\n", row["motion"].get<std::string>(),
-        row["px_per_spacing"].get<double>(), row["change_rms"].get<double>(), row["truth_change_rms"].get<double>(),
-        row["ratio"].get<double>(), row["error_rms"].get<double>(), row["error_change_rms"].get<double>());
+  std::cout << fmt::format("{:<8}{:>12}{:>8} |{:^26}|{:^26}\n", "", "", "truth", "one ray a pixel", "with outlines");
+  std::cout << fmt::format("{:<8}{:>12}{:>8} |{:>8}{:>9}{:>9}|{:>8}{:>9}{:>9}\n", "motion", "px a spacing", "change",
+                           "ratio", "error", "changes", "ratio", "error", "changes");
+  for (const Json& row : json["rows"]) {
+    const auto value = [&](const char* key) { return row[key].get<double>(); };
+    std::cout << fmt::format("{:<8}{:>12.2f}{:>8.4f} |{:>8.2f}{:>9.4f}{:>9.4f}|{:>8.2f}{:>9.4f}{:>9.4f}\n",
+                             row["motion"].get<std::string>(), value("px_per_spacing"), value("truth_change_rms"),
+                             value("ratio"), value("error_rms"), value("error_change_rms"), value("outlined_ratio"),
+                             value("outlined_error_rms"), value("outlined_error_change_rms"));
+  }
 }
 
 }  // namespace
@@ -184,8 +217,10 @@ void add_bench_temporal(CLI::App& bench) {
       "are\n"
       "so small that a spacing takes the pixels asked for. change_rms is the change from frame to frame,\n"
       "truth_change_rms that of pictures of many rays a pixel, averaged after shading; what ratio is above 1 is\n"
-      "shimmer. error_rms is the difference to the truth, error_change_rms its change from frame to frame. All are\n"
-      "root mean squares over the values of the developed pictures, 0 to 1, not rounded.");
+      "shimmer. error_rms is the difference to the truth, error_change_rms its change from frame to frame. The same\n"
+      "with outlined_ before: of pictures whose outlines are drawn by up to 16 rays a pixel, as render draws them\n"
+      "unless --antialias off. All are root mean squares over the values of the developed pictures, 0 to 1, not\n"
+      "rounded.");
   run_with(*command, arguments, measure, print);
 }
 
