@@ -5,10 +5,11 @@
 #     tools/measure_performance.sh PROGRAM FOLDER [table1] [peers] [temporal]
 #
 # Without a part named, all are measured. FOLDER keeps what the benches print (table1.json, peers/peers.json,
-# temporal.json) and the pictures. MAX_PARTICLES, REPEAT and PEER_PARTICLES may be set for a smaller run.
+# temporal.json) and the pictures. For a smaller run: PARTICLES=100000,779752 SIZES=256,512 MAX_PARTICLES=N REPEAT=1
+# PEER_PARTICLES=100000 TEMPORAL="--particles 30000 --frames 2 --rays 2".
 set -euo pipefail
 if [ $# -lt 2 ]; then
-  sed -n '2,8s/^# \{0,1\}//p' "$0" >&2
+  sed -n '2,9s/^# \{0,1\}//p' "$0" >&2
   exit 2
 fi
 program=$(realpath "$1")
@@ -25,14 +26,18 @@ fi
 for part in "$@"; do
   case $part in
     table1)
-      "$program" bench table1 --json --max-particles "${MAX_PARTICLES:-142612764}" --repeat "${REPEAT:-5}" >table1.json
+      arguments=(--max-particles "${MAX_PARTICLES:-142612764}" --repeat "${REPEAT:-5}")
+      [ -z "${PARTICLES:-}" ] || arguments+=(--particles "$PARTICLES")
+      [ -z "${SIZES:-}" ] || arguments+=(--sizes "$SIZES")
+      "$program" bench table1 --json "${arguments[@]}" >table1.json
       ;;
     peers)
       "$root/tools/install_packages.sh" "$root/bench/peers/packages.txt" >&2
-      "$root/bench/peers/run.sh" "$program" peers "${PEER_PARTICLES:-100000,1000000}" "${REPEAT:-5}" >&2
+      "$root/bench/peers/run.sh" "$program" peers "${PEER_PARTICLES:-100000,1000000}" "${REPEAT:-3}" >&2
       ;;
     temporal)
-      "$program" bench temporal --json >temporal.json
+      read -ra arguments <<<"${TEMPORAL:-}"
+      "$program" bench temporal --json "${arguments[@]}" >temporal.json
       ;;
     *)
       echo "no such part: $part" >&2
@@ -75,14 +80,13 @@ def table1():
     rows = []
     for count in counts:
         row = by[count, size]
-        beside = (row["peak_rss_bytes"] - row["input_bytes"]) / 1e6
         rows.append([f"{count:,}", ms(row["build_ms"]), ms(row["view_ms"])]
                     + [ms(row["stages_ms"].get(stage)) for stage in stages]
-                    + [f"{100 * row['covered_pixels'] / size ** 2:.0f} %", f"{beside:.0f}"])
+                    + [f"{100 * row['covered_pixels'] / size ** 2:.0f} %", f"{row['beside_input_bytes'] / 1e6:.0f}"])
     table(["particles", "build", "view"] + stages + ["covered", "memory"], rows)
     if found["growth"] is not None:
         print(f"Growth from the fewest to the most: {found['growth']:.1f} times a frame, "
-              f"{found['view_growth']:.1f} times a view.\n")
+              f"{found['view_growth']:.1f} times a new view of the same particles.\n")
     for note in found["notes"]:
         print(note + "\n")
 
@@ -92,7 +96,8 @@ def peers():
     table(["particles", "Meniscus, ms", "VTK, ms", "VTK without upload, ms", "ratio"],
           [[f"{row['particles']:,}", ms(row["meniscus_ms"]), ms(row["frame_ms"]), ms(row["same_particles_ms"]),
             f"{row['ratio']:.1f}"] for row in found])
-    print(f"VTK draws with {found[0]['renderer']}.\n")
+    if found:
+        print(f"VTK draws with {found[0]['renderer']}.\n")
 
 
 def temporal():
