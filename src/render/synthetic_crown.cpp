@@ -283,7 +283,7 @@ Particles synthetic_crown(std::size_t count, std::uint64_t seed) {
 }
 
 View crown_view(int width, int height) {
-  const float elevation = 0.68f, azimuth = 0.20f;  // radians
+  const float elevation = 0.71f, azimuth = 0.20f;  // radians
   const vec3 towards(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
                      std::cos(elevation) * std::cos(azimuth));
   const vec3 target(-0.149f, 0.19f, 0.030f);  // the middle of what is seen of the pool, whose near corner is the right
