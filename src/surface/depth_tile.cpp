@@ -18,6 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = HWY_CAPPED(float, 16);
 using Vec = hn::Vec<Tag>;
 using Mask = hn::Mask<Tag>;
+using RowTag = HWY_CAPPED(float, DepthTile::kQuads);
 
 constexpr int kLanes = 16;
 
@@ -27,6 +28,13 @@ struct Candidates {
   alignas(64) float near[kLanes];  ///< m: no ray enters the sphere before
   alignas(64) float far[kLanes];   ///< m: no ray leaves it behind
   alignas(64) std::int32_t x0[kLanes], x1[kLanes], y0[kLanes], y1[kLanes];
+};
+
+/// Boxes of a cluster's runs in the tile.
+struct SeenRuns {
+  alignas(64) float near[SphereGroups::kRuns], far[SphereGroups::kRuns];      ///< m, as in Candidates
+  alignas(64) std::int32_t x0[SphereGroups::kRuns], x1[SphereGroups::kRuns];  ///< quads, both ends included
+  alignas(64) std::int32_t y0[SphereGroups::kRuns], y1[SphereGroups::kRuns];
 };
 
 struct Ends {
@@ -43,26 +51,178 @@ HWY_INLINE Ends tangents(Vec c, Vec z, Vec radius, Vec denominator, Vec per_deno
           hn::IfThenElse(around, all, hn::Mul(hn::Add(cz, root), per_denominator))};
 }
 
-/// One group of spheres drawn into one tile.
-class GroupInTile {
+/// Spheres of one set and one tile.
+class SpheresInTile {
  public:
-  GroupInTile(const SplatCamera& camera, const Spheres& spheres, DepthTile& tile)
+  SpheresInTile(const SplatCamera& camera, const Spheres& spheres, DepthTile& tile)
       : camera_(camera), spheres_(spheres), tile_(tile) {}
 
-  void run(std::size_t begin, std::size_t end) {
-    const Tag d;
-    const std::size_t lanes = hn::Lanes(d);
-    for (std::size_t at = begin; at < end; at += lanes) {
-      const std::size_t count = std::min(end - at, lanes);
-      std::uint32_t mask = candidates(at, count);
-      for (; mask != 0; mask &= mask - 1) draw(__builtin_ctz(mask));
+  /// Adds the runs that the tile may show to the list.
+  void list(const SphereGroups::Cluster& cluster, std::vector<TileRun>& runs) {
+    for (std::uint32_t mask = seen(cluster); mask != 0; mask &= mask - 1) {
+      const int l = __builtin_ctz(mask);
+      const auto quad = [](std::int32_t number) { return static_cast<std::uint8_t>(number); };
+      TileRun run{runs_.near[l],     runs_.far[l],      &spheres_,         cluster.begin[l], cluster.count[l],
+                  quad(runs_.x0[l]), quad(runs_.x1[l]), quad(runs_.y0[l]), quad(runs_.y1[l])};
+      if (may_be_seen(run))
+        runs.push_back(run);
+      else
+        leave_out(run);
     }
-    if (touched_ == 0) return;
-    for (; touched_ != 0; touched_ &= touched_ - 1) measure(__builtin_ctz(touched_));
-    tile_.farthest = *std::max_element(std::begin(tile_.full), std::end(tile_.full));
+  }
+
+  void draw(const TileRun& run) {
+    if (!may_be_seen(run)) {
+      leave_out(run);
+      return;
+    }
+    const std::size_t lanes = hn::Lanes(Tag()), end = std::size_t{run.begin} + run.count;
+    for (std::size_t at = run.begin; at < end; at += lanes) {
+      std::uint32_t spheres = candidates(at, std::min(end - at, lanes));
+      for (; spheres != 0; spheres &= spheres - 1) draw(__builtin_ctz(spheres));
+    }
+    for (; touched_ != 0; touched_ &= touched_ - 1) measure(__builtin_ctzll(touched_));
+  }
+
+  void find_farthest() {
+    const Tag d;
+    Vec farthest = hn::Load(d, tile_.full);
+    for (std::size_t quad = 0; quad < DepthTile::kQuads * DepthTile::kQuads; quad += hn::Lanes(d))
+      farthest = hn::Max(farthest, hn::Load(d, tile_.full + quad));
+    tile_.farthest = hn::GetLane(hn::MaxOfLanes(d, farthest));
   }
 
  private:
+  /// Fills runs_; the bits of those runs that the tile may show.
+  HWY_INLINE std::uint32_t seen(const SphereGroups::Cluster& cluster) {
+    const Tag d;
+    const hn::RebindToSigned<Tag> di;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const Vec zero = hn::Zero(d);
+    std::uint32_t mask = 0;
+    for (int part = 0; part < cluster.runs; part += lanes) {
+      const Vec ox = hn::Sub(hn::Load(d, cluster.x + part), hn::Set(d, camera_.eye.x)),
+                oy = hn::Sub(hn::Load(d, cluster.y + part), hn::Set(d, camera_.eye.y)),
+                oz = hn::Sub(hn::Load(d, cluster.z + part), hn::Set(d, camera_.eye.z));
+      const Vec hx = hn::Load(d, cluster.half_x + part), hy = hn::Load(d, cluster.half_y + part),
+                hz = hn::Load(d, cluster.half_z + part);
+      // The box along the camera's axes around it.
+      const auto along = [&](vec3 axis) {
+        return hn::MulAdd(ox, hn::Set(d, axis.x), hn::MulAdd(oy, hn::Set(d, axis.y), hn::Mul(oz, hn::Set(d, axis.z))));
+      };
+      const auto extent = [&](vec3 axis) {
+        return hn::MulAdd(hx, hn::Set(d, std::abs(axis.x)),
+                          hn::MulAdd(hy, hn::Set(d, std::abs(axis.y)), hn::Mul(hz, hn::Set(d, std::abs(axis.z)))));
+      };
+      const Vec cx = along(camera_.right), cy = along(camera_.up), cz = along(camera_.forward);
+      const Vec ex = extent(camera_.right), ey = extent(camera_.up), ez = extent(camera_.forward);
+      const Vec first = hn::Sub(cz, ez), last = hn::Add(cz, ez);
+      Mask good = hn::And(hn::Ge(hx, zero), hn::Gt(last, zero));
+      Ends u{hn::Sub(cx, ex), hn::Add(cx, ex)}, v{hn::Sub(cy, ey), hn::Add(cy, ey)};
+      Vec near, far;
+      if (camera_.perspective) {
+        const Mask around = hn::Le(first, hn::Mul(hn::Set(d, 1e-5f), last));
+        const Vec one = hn::Set(d, 1.0f), all = hn::Set(d, 1e30f);
+        const Vec per_first = hn::Div(one, first), per_last = hn::Div(one, last);
+        const auto low = [&](Vec value) {
+          return hn::IfThenElse(around, hn::Neg(all),
+                                hn::Mul(value, hn::IfThenElse(hn::Lt(value, zero), per_first, per_last)));
+        };
+        const auto high = [&](Vec value) {
+          return hn::IfThenElse(around, all, hn::Mul(value, hn::IfThenElse(hn::Lt(value, zero), per_last, per_first)));
+        };
+        u = {low(u.low), high(u.high)};
+        v = {low(v.low), high(v.high)};
+        // A little more than the box: the distances of the spheres are rounded, too.
+        const auto length = [&](Vec x, Vec y, Vec z) {
+          return hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+        };
+        const Vec ax = hn::Abs(ox), ay = hn::Abs(oy), az = hn::Abs(oz);
+        near = hn::Mul(hn::Set(d, 0.99999f), length(hn::Max(hn::Sub(ax, hx), zero), hn::Max(hn::Sub(ay, hy), zero),
+                                                    hn::Max(hn::Sub(az, hz), zero)));
+        far = hn::Mul(hn::Set(d, 1.00001f), length(hn::Add(ax, hx), hn::Add(ay, hy), hn::Add(az, hz)));
+      } else {
+        const Vec doubt = hn::Mul(hn::Set(d, 1e-5f), hn::Add(hn::Abs(cz), ez));
+        near = hn::Max(hn::Sub(first, doubt), zero);
+        far = hn::Add(last, doubt);
+      }
+      const Pixels pixels = pixels_between(u, v);
+      good = hn::And(good, pixels.some);
+      const Vec per_quad = hn::Set(d, 1.0f / DepthTile::kQuad);
+      const auto quad = [&](Vec pixel) { return hn::ConvertTo(di, hn::Mul(pixel, per_quad)); };
+      hn::Store(near, d, runs_.near + part);
+      hn::Store(far, d, runs_.far + part);
+      hn::Store(quad(pixels.x0), di, runs_.x0 + part);
+      hn::Store(quad(pixels.x1), di, runs_.x1 + part);
+      hn::Store(quad(pixels.y0), di, runs_.y0 + part);
+      hn::Store(quad(pixels.y1), di, runs_.y1 + part);
+      mask |= bits_of(good) << part;
+    }
+    return mask;
+  }
+
+  static HWY_INLINE std::uint32_t bits_of(Mask mask) {
+    alignas(64) std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(Tag(), mask, bits);
+    return static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8;
+  }
+
+  /// Whether something at least as near as the run may change one of the quads that it touches.
+  HWY_INLINE bool may_be_seen(const TileRun& run) const {
+    const RowTag d;
+    const auto near = hn::Set(d, run.near);
+    for (int part = 0; part < DepthTile::kQuads; part += static_cast<int>(hn::Lanes(d))) {
+      const auto columns = columns_of(run, part);
+      for (int qy = run.y0; qy <= run.y1; ++qy)
+        if (!hn::AllFalse(d, hn::And(columns, hn::Ge(hn::Load(d, tile_.full + qy * DepthTile::kQuads + part), near))))
+          return true;
+    }
+    return false;
+  }
+
+  /// No exit of the quads that the run touches is to be nearer than its far side.
+  HWY_INLINE void leave_out(const TileRun& run) {
+    const RowTag d;
+    const auto far = hn::Set(d, run.far);
+    for (int part = 0; part < DepthTile::kQuads; part += static_cast<int>(hn::Lanes(d))) {
+      const auto columns = columns_of(run, part);
+      for (int qy = run.y0; qy <= run.y1; ++qy) {
+        float* least = tile_.least + qy * DepthTile::kQuads + part;
+        const auto before = hn::Load(d, least);
+        hn::Store(hn::IfThenElse(columns, hn::Max(before, far), before), d, least);
+      }
+    }
+  }
+
+  HWY_INLINE hn::Mask<RowTag> columns_of(const TileRun& run, int part) const {
+    const RowTag d;
+    const auto place = hn::Iota(d, static_cast<float>(part));
+    return hn::And(hn::Ge(place, hn::Set(d, static_cast<float>(run.x0))),
+                   hn::Le(place, hn::Set(d, static_cast<float>(run.x1))));
+  }
+
+  struct Pixels {
+    Vec x0, x1, y0, y1;  ///< of the tile, both ends included
+    Mask some;
+  };
+  HWY_INLINE Pixels pixels_between(Ends u, Ends v) const {
+    const Tag d;
+    // A hundredth of a pixel more than needed keeps rounding from losing one.
+    const Vec per_du = hn::Set(d, 1.0f / camera_.du), per_dv = hn::Set(d, 1.0f / camera_.dv);
+    const Vec margin = hn::Set(d, 0.01f), zero = hn::Zero(d);
+    const auto pixel = [&](Vec value, float origin, Vec per) {
+      return hn::Mul(hn::Sub(value, hn::Set(d, origin)), per);
+    };
+    const Vec last_x = hn::Set(d, static_cast<float>(tile_.width - 1)),
+              last_y = hn::Set(d, static_cast<float>(tile_.height - 1));
+    const Vec x0 = hn::Ceil(hn::Max(hn::Sub(pixel(u.low, tile_.u0, per_du), margin), zero)),
+              y0 = hn::Ceil(hn::Max(hn::Sub(pixel(v.high, tile_.v0, per_dv), margin), zero)),
+              x1 = hn::Floor(hn::Min(hn::Add(pixel(u.high, tile_.u0, per_du), margin), last_x)),
+              y1 = hn::Floor(hn::Min(hn::Add(pixel(v.low, tile_.v0, per_dv), margin), last_y));
+    const Mask some = hn::And(hn::Le(x0, x1), hn::Le(y0, y1));
+    return {hn::Min(x0, last_x), hn::Max(x1, zero), hn::Min(y0, last_y), hn::Max(y1, zero), some};
+  }
+
   HWY_INLINE Vec load(std::span<const float> values, std::size_t at, std::size_t count) const {
     const Tag d;
     if (count == hn::Lanes(d)) return hn::LoadU(d, values.data() + at);
@@ -102,28 +262,8 @@ class GroupInTile {
       u = {hn::Sub(cx, radius), hn::Add(cx, radius)};
       v = {hn::Sub(cy, radius), hn::Add(cy, radius)};
     }
-    if (!tile_.exact_exit) {
-      const Mask behind = hn::And(good, hn::Gt(near, hn::Set(d, tile_.farthest)));
-      if (!hn::AllFalse(d, behind)) {
-        const Vec leave = hn::IfThenElse(behind, far, hn::Set(d, -std::numeric_limits<float>::infinity()));
-        const float exit = hn::GetLane(hn::MaxOfLanes(d, leave));
-        for (float& least : tile_.least) least = std::max(least, exit);
-        good = hn::AndNot(behind, good);
-      }
-    }
-    // Pixels of the tile; a hundredth of a pixel more than needed keeps rounding from losing one.
-    const Vec per_du = hn::Set(d, 1.0f / camera_.du), per_dv = hn::Set(d, 1.0f / camera_.dv);
-    const Vec margin = hn::Set(d, 0.01f);
-    const auto pixel = [&](Vec value, float origin, Vec per) {
-      return hn::Mul(hn::Sub(value, hn::Set(d, origin)), per);
-    };
-    const Vec x0 = hn::Ceil(hn::Max(hn::Sub(pixel(u.low, tile_.u0, per_du), margin), zero)),
-              y0 = hn::Ceil(hn::Max(hn::Sub(pixel(v.high, tile_.v0, per_dv), margin), zero)),
-              x1 = hn::Floor(hn::Min(hn::Add(pixel(u.high, tile_.u0, per_du), margin),
-                                     hn::Set(d, static_cast<float>(tile_.width - 1)))),
-              y1 = hn::Floor(hn::Min(hn::Add(pixel(v.low, tile_.v0, per_dv), margin),
-                                     hn::Set(d, static_cast<float>(tile_.height - 1))));
-    good = hn::And(good, hn::And(hn::Le(x0, x1), hn::Le(y0, y1)));
+    const Pixels pixels = pixels_between(u, v);
+    good = hn::And(good, pixels.some);
     if (hn::AllFalse(d, good)) return 0;
     hn::Store(cx, d, found_.x);
     hn::Store(cy, d, found_.y);
@@ -131,31 +271,36 @@ class GroupInTile {
     hn::Store(radius, d, found_.radius);
     hn::Store(near, d, found_.near);
     hn::Store(far, d, found_.far);
-    const Vec last = hn::Set(d, static_cast<float>(DepthTile::kSide));
-    hn::Store(hn::ConvertTo(di, hn::Min(x0, last)), di, found_.x0);
-    hn::Store(hn::ConvertTo(di, hn::Max(x1, hn::Set(d, -1.0f))), di, found_.x1);
-    hn::Store(hn::ConvertTo(di, hn::Min(y0, last)), di, found_.y0);
-    hn::Store(hn::ConvertTo(di, hn::Max(y1, hn::Set(d, -1.0f))), di, found_.y1);
-    alignas(64) std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, good, bits);
-    return static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8;
+    hn::Store(hn::ConvertTo(di, pixels.x0), di, found_.x0);
+    hn::Store(hn::ConvertTo(di, pixels.x1), di, found_.x1);
+    hn::Store(hn::ConvertTo(di, pixels.y0), di, found_.y0);
+    hn::Store(hn::ConvertTo(di, pixels.y1), di, found_.y1);
+    return bits_of(good);
   }
 
-  /// Draws one candidate into the blocks of the quads where it may change something.
+  /// Draws one candidate into the blocks where it may change something.
   HWY_INLINE void draw(int l) {
+    const Tag d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
     const int bx0 = found_.x0[l] / DepthTile::kBlock, bx1 = found_.x1[l] / DepthTile::kBlock;
     const int by0 = found_.y0[l] / DepthTile::kBlock, by1 = found_.y1[l] / DepthTile::kBlock;
-    const float near = found_.near[l], far = found_.far[l];
-    for (int by = by0; by <= by1; ++by)
-      for (int bx = bx0; bx <= bx1; ++bx) {
-        const int quad = by / 2 * DepthTile::kQuads + bx / 2;
-        if (near > tile_.full[quad] && (!tile_.exact_exit || far <= tile_.least[quad])) {
-          if (!tile_.exact_exit) tile_.least[quad] = std::max(tile_.least[quad], far);
-          continue;
+    const Vec near = hn::Set(d, found_.near[l]), far = hn::Set(d, found_.far[l]);
+    for (int part = bx0 / lanes * lanes; part <= bx1; part += lanes) {
+      const Vec place = hn::Iota(d, static_cast<float>(part));
+      const Mask columns = hn::And(hn::Ge(place, hn::Set(d, static_cast<float>(bx0))),
+                                   hn::Le(place, hn::Set(d, static_cast<float>(bx1))));
+      for (int by = by0; by <= by1; ++by) {
+        const int row = by * DepthTile::kBlocks + part;
+        const Vec exit = hn::Load(d, tile_.exit + row);
+        hn::Store(hn::IfThenElse(columns, hn::Max(exit, far), exit), d, tile_.exit + row);
+        std::uint32_t blocks = bits_of(hn::And(columns, hn::Ge(hn::Load(d, tile_.full_block + row), near)));
+        for (; blocks != 0; blocks &= blocks - 1) {
+          const int bx = part + __builtin_ctz(blocks);
+          draw_block(l, bx, by);
+          touched_ |= std::uint64_t{1} << (by / 2 * DepthTile::kQuads + bx / 2);
         }
-        draw_block(l, bx, by);
-        touched_ |= 1u << quad;
       }
+    }
   }
 
   HWY_INLINE void draw_block(int l, int bx, int by) {
@@ -190,39 +335,81 @@ class GroupInTile {
       const Vec half = hn::Sqrt(hn::Max(half2, zero)), far_end = hn::Add(middle, half);
       const Mask hits = hn::And(hn::Gt(half2, zero), hn::Gt(far_end, zero));
       const Vec near_end = hn::Max(hn::Sub(middle, half), zero);
-      const Vec before = hn::Load(d, tile_.entry + at), after = hn::Load(d, tile_.exit + at);
+      const Vec before = hn::Load(d, tile_.entry + at);
       hn::Store(hn::IfThenElse(hits, hn::Min(before, near_end), before), d, tile_.entry + at);
-      hn::Store(hn::IfThenElse(hits, hn::Max(after, far_end), after), d, tile_.exit + at);
     }
   }
 
-  /// The quad's largest entry and, for exact exits, its smallest exit.
+  /// The quad's largest entry.
   HWY_INLINE void measure(int quad) {
     const Tag d;
     const int lanes = static_cast<int>(hn::Lanes(d));
     const int first = (quad / DepthTile::kQuads * 2 * DepthTile::kBlocks + quad % DepthTile::kQuads * 2) * kLanes;
-    Vec full = hn::Load(d, tile_.entry + first), least = hn::Load(d, tile_.exit + first);
-    for (const int row : {0, DepthTile::kBlocks * kLanes})
-      for (int part = 0; part < 2 * kLanes; part += lanes) {
-        full = hn::Max(full, hn::Load(d, tile_.entry + first + row + part));
-        least = hn::Min(least, hn::Load(d, tile_.exit + first + row + part));
-      }
-    tile_.full[quad] = hn::GetLane(hn::MaxOfLanes(d, full));
-    if (tile_.exact_exit) tile_.least[quad] = hn::GetLane(hn::MinOfLanes(d, least));
+    float farthest = -std::numeric_limits<float>::infinity();
+    for (int of_quad = 0; of_quad < 4; ++of_quad) {
+      const int at = first + (of_quad / 2 * DepthTile::kBlocks + of_quad % 2) * kLanes;
+      Vec full = hn::Load(d, tile_.entry + at);
+      for (int part = lanes; part < kLanes; part += lanes) full = hn::Max(full, hn::Load(d, tile_.entry + at + part));
+      const float block = hn::GetLane(hn::MaxOfLanes(d, full));
+      tile_.full_block[at / kLanes] = block;
+      farthest = std::max(farthest, block);
+    }
+    tile_.full[quad] = farthest;
   }
 
   const SplatCamera& camera_;
   const Spheres& spheres_;
   DepthTile& tile_;
-  std::uint32_t touched_ = 0;  ///< quads
+  std::uint64_t touched_ = 0;  ///< quads
   Candidates found_;
+  SeenRuns runs_;
 };
+
+void start(const SplatCamera& camera, DepthTile& tile) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const Vec one = hn::Set(d, 1.0f), width = hn::Set(d, static_cast<float>(tile.width)),
+            height = hn::Set(d, static_cast<float>(tile.height));
+  alignas(64) float lane_x[kLanes], lane_y[kLanes];
+  for (int l = 0; l < kLanes; ++l) {
+    lane_x[l] = static_cast<float>(l % DepthTile::kBlock);
+    lane_y[l] = static_cast<float>(l / DepthTile::kBlock);
+    tile.lane_u[l] = lane_x[l] * camera.du;
+    tile.lane_v[l] = lane_y[l] * camera.dv;
+  }
+  for (int block = 0; block < DepthTile::kBlocks * DepthTile::kBlocks; ++block)
+    for (int part = 0; part < kLanes; part += lanes) {
+      const auto x = static_cast<float>(block % DepthTile::kBlocks * DepthTile::kBlock),
+                 y = static_cast<float>(block / DepthTile::kBlocks * DepthTile::kBlock);
+      const Vec i = hn::Add(hn::Load(d, lane_x + part), hn::Set(d, x)),
+                j = hn::Add(hn::Load(d, lane_y + part), hn::Set(d, y));
+      const Vec u = hn::MulAdd(i, hn::Set(d, camera.du), hn::Set(d, tile.u0)),
+                v = hn::MulAdd(j, hn::Set(d, camera.dv), hn::Set(d, tile.v0));
+      const int at = block * kLanes + part;
+      if (camera.perspective)
+        hn::Store(hn::Div(one, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one)))), d, tile.inverse_length + at);
+      const Mask within = hn::And(hn::Lt(i, width), hn::Lt(j, height));
+      hn::Store(hn::IfThenElse(within, hn::Set(d, kInfinity), hn::Set(d, -kInfinity)), d, tile.entry + at);
+    }
+}
 
 }  // namespace
 
-void SplatIntoDepthTile(const SplatCamera& camera, const Spheres& spheres, std::size_t begin, std::size_t end,
-                        DepthTile& tile) {
-  GroupInTile(camera, spheres, tile).run(begin, end);
+void StartDepthTile(const SplatCamera& camera, DepthTile& tile) { start(camera, tile); }
+
+void ListRuns(const SplatCamera& camera, const Spheres& spheres, const SphereGroups::Cluster& cluster, DepthTile& tile,
+              std::vector<TileRun>& runs) {
+  SpheresInTile(camera, spheres, tile).list(cluster, runs);
+}
+
+void DrawRuns(const SplatCamera& camera, std::span<const TileRun> runs, DepthTile& tile) {
+  for (std::size_t begin = 0; begin < runs.size();) {
+    SpheresInTile drawing(camera, *runs[begin].spheres, tile);
+    const Spheres* spheres = runs[begin].spheres;
+    for (; begin < runs.size() && runs[begin].spheres == spheres; ++begin) drawing.draw(runs[begin]);
+    drawing.find_farthest();
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -232,42 +419,53 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meniscus {
 
-HWY_EXPORT(SplatIntoDepthTile);
+HWY_EXPORT(StartDepthTile);
+HWY_EXPORT(ListRuns);
+HWY_EXPORT(DrawRuns);
 
-void start_depth_tile(const SplatCamera& camera, int x, int y, bool exact_exit, DepthTile& tile) {
+void start_depth_tile(const SplatCamera& camera, int x, int y, DepthTile& tile) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  constexpr int kPixels = DepthTile::kSide * DepthTile::kSide;
-  tile.exact_exit = exact_exit;
   tile.u0 = camera.u0 + static_cast<float>(x) * camera.du;
   tile.v0 = camera.v0 + static_cast<float>(y) * camera.dv;
   tile.width = std::min(DepthTile::kSide, camera.width - x);
   tile.height = std::min(DepthTile::kSide, camera.height - y);
   tile.farthest = kInfinity;
-  for (int l = 0; l < DepthTile::kBlock * DepthTile::kBlock; ++l) {
-    tile.lane_u[l] = static_cast<float>(l % DepthTile::kBlock) * camera.du;
-    tile.lane_v[l] = static_cast<float>(l / DepthTile::kBlock) * camera.dv;
-  }
-  std::fill_n(tile.entry, kPixels, kInfinity);
-  std::fill_n(tile.exit, kPixels, -kInfinity);
-  std::fill_n(tile.full, DepthTile::kQuads * DepthTile::kQuads, kInfinity);
+  std::fill_n(tile.full, DepthTile::kQuads * DepthTile::kQuads, -kInfinity);
+  for (int y_quad = 0; y_quad * DepthTile::kQuad < tile.height; ++y_quad)  // none beyond the picture
+    for (int x_quad = 0; x_quad * DepthTile::kQuad < tile.width; ++x_quad)
+      tile.full[y_quad * DepthTile::kQuads + x_quad] = kInfinity;
+  std::fill_n(tile.full_block, DepthTile::kBlocks * DepthTile::kBlocks, kInfinity);
   std::fill_n(tile.least, DepthTile::kQuads * DepthTile::kQuads, -kInfinity);
-  for (int at = 0; at < kPixels; ++at) {
-    constexpr int kInBlock = DepthTile::kBlock * DepthTile::kBlock;
-    const int block = at / kInBlock, lane = at % kInBlock;
-    const int i = block % DepthTile::kBlocks * DepthTile::kBlock + lane % DepthTile::kBlock,
-              j = block / DepthTile::kBlocks * DepthTile::kBlock + lane / DepthTile::kBlock;
-    const float u = tile.u0 + static_cast<float>(i) * camera.du, v = tile.v0 + static_cast<float>(j) * camera.dv;
-    if (camera.perspective) tile.inverse_length[at] = 1.0f / std::sqrt(u * u + v * v + 1.0f);
-    if (i >= tile.width || j >= tile.height) {
-      tile.entry[at] = -kInfinity;
-      tile.exit[at] = kInfinity;
-    }
-  }
+  std::fill_n(tile.exit, DepthTile::kBlocks * DepthTile::kBlocks, -kInfinity);
+  HWY_DYNAMIC_DISPATCH(StartDepthTile)(camera, tile);
 }
 
-void splat_into_depth_tile(const SplatCamera& camera, const Spheres& spheres, std::size_t begin, std::size_t end,
-                           DepthTile& tile) {
-  HWY_DYNAMIC_DISPATCH(SplatIntoDepthTile)(camera, spheres, begin, end, tile);
+void list_runs(const SplatCamera& camera, const Spheres& spheres, const SphereGroups::Cluster& cluster, DepthTile& tile,
+               std::vector<TileRun>& runs) {
+  HWY_DYNAMIC_DISPATCH(ListRuns)(camera, spheres, cluster, tile, runs);
+}
+
+void draw_runs(const SplatCamera& camera, std::span<const TileRun> runs, DepthTile& tile) {
+  HWY_DYNAMIC_DISPATCH(DrawRuns)(camera, runs, tile);
+}
+
+void copy_depth_tile(const DepthTile& tile, int x, int y, Image<float>& entry, Image<float>& exit) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr int kBlock = DepthTile::kBlock;
+  for (int j = 0; j < tile.height; ++j)
+    for (int i = 0; i < tile.width; i += kBlock) {
+      const int block = j / kBlock * DepthTile::kBlocks + i / kBlock;
+      const float* from = tile.entry + block * kBlock * kBlock + j % kBlock * kBlock;
+      const float last =
+          std::max(tile.exit[block], tile.least[j / DepthTile::kQuad * DepthTile::kQuads + i / DepthTile::kQuad]);
+      float* to_entry = entry.row(y + j) + x + i;
+      float* to_exit = exit.row(y + j) + x + i;
+      const int count = std::min(kBlock, tile.width - i);
+      for (int k = 0; k < count; ++k) {
+        to_entry[k] = from[k];
+        to_exit[k] = from[k] < kInfinity ? last : -kInfinity;
+      }
+    }
 }
 
 }  // namespace meniscus

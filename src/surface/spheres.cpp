@@ -32,7 +32,9 @@ class SphereSurface final : public Surface {
     SurfaceBuffers buffers;
     {
       StageTimer timer(times, "splat");
-      splat_depth(view, spheres(), buffers.entry, buffers.exit);
+      const SphereGroups groups(spheres());
+      const GroupedSpheres all{spheres(), &groups};
+      splat_entries(view, {&all, 1}, buffers.entry, buffers.exit);
     }
     if (!points.empty()) return refine(view, buffers, points, times);
     find(view, {}, buffers, times);

@@ -11,22 +11,31 @@ struct Spheres {
   std::span<const float> radius;  ///< one a sphere, or one for all
 };
 
-/// Boxes around runs of consecutive spheres, which pass a view together: few and small when consecutive spheres lie
-/// near each other, as those of sorted particles do. It depends on no view.
+/// Boxes around runs of up to sixteen consecutive spheres, sixteen of them to a cluster, which pass a view together:
+/// small when consecutive spheres lie near each other, as those of sorted particles do. It depends on no view.
 class SphereGroups {
  public:
-  struct Group {
-    vec3 low, high;  ///< m, of the spheres
-    std::uint32_t begin, end;
+  static constexpr int kRun = 16;   ///< most spheres in a run: one vector
+  static constexpr int kRuns = 16;  ///< most runs in a cluster
+  struct Cluster {
+    alignas(64) float x[kRuns], y[kRuns], z[kRuns];  ///< m, middles of the runs' boxes
+    alignas(64) float half_x[kRuns], half_y[kRuns],
+        half_z[kRuns];           ///< m, of their extents; negative where there is no run
+    std::uint32_t begin[kRuns];  ///< their first spheres
+    std::uint8_t count[kRuns];   ///< of their spheres
+    vec3 low, high;              ///< m, of all
+    int runs;
   };
   SphereGroups() = default;
   /// @throws Error limit_exceeded: more than 2^32 spheres
   explicit SphereGroups(const Spheres& spheres);
-  std::span<const Group> groups() const { return groups_; }
-  std::uint64_t memory_bytes() const { return groups_.capacity() * sizeof(Group); }
+  /// Pieces of the clusters, in the order of the spheres.
+  std::span<const std::vector<Cluster>> pieces() const { return pieces_; }
+  std::size_t clusters() const;
+  std::uint64_t memory_bytes() const;
 
  private:
-  std::vector<Group> groups_;
+  std::vector<std::vector<Cluster>> pieces_;
 };
 
 /// Spheres and their groups, which outlive the call that they are given to.
@@ -35,13 +44,10 @@ struct GroupedSpheres {
   const SphereGroups* groups;
 };
 
-/// For every pixel centre the least distance at which its ray enters a sphere (0 if it starts inside of one)
-/// and the largest at which it leaves one; +infinity and -infinity where it meets none.
-void splat_depth(const View& view, const Spheres& spheres, Image<float>& entry, Image<float>& exit);
-
-/// The same entries, of several sets of spheres together, and exits that may be too far: spheres behind what covers a
-/// part of the picture whole are not drawn, and the far side of their groups' boxes is taken. Where a ray meets no
-/// sphere, entry and exit are +infinity and -infinity as above.
+/// For every pixel centre the least distance at which its ray enters a sphere of any of the sets (0 if it starts inside
+/// of one) and a distance behind which it leaves none; +infinity and -infinity where it meets none. Entries are exact,
+/// exits may be too far: they hold for blocks of 4 x 4 pixels, and where spheres are behind what covers a part of the
+/// picture whole, those are not drawn and the far side of their boxes is taken.
 void splat_entries(const View& view, std::span<const GroupedSpheres> sets, Image<float>& entry, Image<float>& exit);
 
 /// For every `stride`-th pixel in both directions (at the centre of each block of stride x stride pixels) the

@@ -1,4 +1,4 @@
-// Entry and exit distances: groups of spheres sorted into tiles, nearest first, what is hidden left out.
+// Entry and exit distances: clusters of spheres sorted into tiles, nearest first, what is hidden left out.
 #include <algorithm>
 #include <bit>
 
@@ -8,17 +8,36 @@
 namespace meniscus {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 11;  ///< groups
+constexpr std::size_t kGrain = 1 << 9;  ///< clusters
 
-/// Where the picture shows a group's box, and between which distances along the rays, m.
-struct SeenGroup {
+using Cluster = SphereGroups::Cluster;
+
+/// One cluster of one of the sets.
+struct ListedCluster {
+  const Cluster* cluster;
+  const Spheres* spheres;
+};
+
+std::vector<ListedCluster> listed(std::span<const GroupedSpheres> sets) {
+  std::size_t count = 0;
+  for (const GroupedSpheres& set : sets) count += set.groups->clusters();
+  std::vector<ListedCluster> list;
+  list.reserve(count);
+  for (const GroupedSpheres& set : sets)
+    for (const auto& piece : set.groups->pieces())
+      for (const Cluster& cluster : piece) list.push_back({&cluster, &set.spheres});
+  return list;
+}
+
+/// Where the picture shows a cluster's box, and between which distances along the rays, m.
+struct SeenCluster {
   SampleRect rect;
   float near, far;
 };
 
-SeenGroup seen(const SplatCamera& camera, const SphereGroups::Group& group) {
-  const SplatBox box{0.5f * (group.low + group.high), 0.5f * (group.high - group.low)};
-  SeenGroup result{samples_of(camera, box), 0, 0};
+SeenCluster seen(const SplatCamera& camera, const Cluster& cluster) {
+  const SplatBox box{0.5f * (cluster.low + cluster.high), 0.5f * (cluster.high - cluster.low)};
+  SeenCluster result{samples_of(camera, box), 0, 0};
   if (result.rect.empty()) return result;
   const vec3 offset = glm::abs(box.middle - camera.eye);
   // A little more than the box: the distances of the spheres are rounded, too.
@@ -34,12 +53,12 @@ SeenGroup seen(const SplatCamera& camera, const SphereGroups::Group& group) {
   return result;
 }
 
-/// Groups by the tile that they touch, in their given order within each tile.
+/// Clusters by the tile that they touch, in their given order within each tile.
 struct Bins {
   int tiles_x = 0, tiles_y = 0;
-  std::vector<SeenGroup> seen;       ///< by group, of all sets one after another
+  std::vector<SeenCluster> seen;     ///< by cluster, of all sets one after another
   std::vector<std::uint32_t> start;  ///< by tile, and one more
-  std::vector<std::uint32_t> groups;
+  std::vector<std::uint32_t> clusters;
 };
 
 template <class Visit>
@@ -50,36 +69,9 @@ void for_each_tile(const Bins& bins, const SampleRect& rect, Visit visit) {
       visit(static_cast<std::size_t>(ty * bins.tiles_x + tx));
 }
 
-/// Several sets' groups as one list.
-class GroupList {
- public:
-  explicit GroupList(std::span<const GroupedSpheres> sets) : sets_(sets) {
-    for (const GroupedSpheres& set : sets) {
-      first_.push_back(size_);
-      size_ += set.groups->groups().size();
-    }
-  }
-  std::size_t size() const { return size_; }
-  std::size_t set_of(std::size_t group) const {
-    std::size_t set = sets_.size() - 1;
-    while (first_[set] > group) --set;
-    return set;
-  }
-  const Spheres& spheres(std::size_t group) const { return sets_[set_of(group)].spheres; }
-  const SphereGroups::Group& operator[](std::size_t group) const {
-    const std::size_t set = set_of(group);
-    return sets_[set].groups->groups()[group - first_[set]];
-  }
-
- private:
-  std::span<const GroupedSpheres> sets_;
-  std::vector<std::size_t> first_;
-  std::size_t size_ = 0;
-};
-
-Bins sort_into_tiles(const SplatCamera& camera, const GroupList& groups) {
+Bins sort_into_tiles(const SplatCamera& camera, std::span<const ListedCluster> list) {
   Bins bins;
-  const std::size_t count = groups.size();
+  const std::size_t count = list.size();
   bins.tiles_x = (camera.width + DepthTile::kSide - 1) / DepthTile::kSide;
   bins.tiles_y = (camera.height + DepthTile::kSide - 1) / DepthTile::kSide;
   const auto tiles = static_cast<std::size_t>(bins.tiles_x) * static_cast<std::size_t>(bins.tiles_y);
@@ -91,7 +83,7 @@ Bins sort_into_tiles(const SplatCamera& camera, const GroupList& groups) {
   parallel_for(pieces, 1, [&](std::size_t piece, std::size_t) {
     counters[piece].assign(tiles, 0);
     for (std::size_t i = piece * per_piece; i < end_of(piece); ++i) {
-      bins.seen[i] = seen(camera, groups[i]);
+      bins.seen[i] = seen(camera, *list[i].cluster);
       for_each_tile(bins, bins.seen[i].rect, [&](std::size_t tile) { ++counters[piece][tile]; });
     }
   });
@@ -106,109 +98,86 @@ Bins sort_into_tiles(const SplatCamera& camera, const GroupList& groups) {
     }
   }
   bins.start[tiles] = sum;
-  bins.groups.resize(sum);
+  bins.clusters.resize(sum);
   parallel_for(pieces, 1, [&](std::size_t piece, std::size_t) {
     for (std::size_t i = piece * per_piece; i < end_of(piece); ++i)
       for_each_tile(bins, bins.seen[i].rect,
-                    [&](std::size_t tile) { bins.groups[counters[piece][tile]++] = static_cast<std::uint32_t>(i); });
+                    [&](std::size_t tile) { bins.clusters[counters[piece][tile]++] = static_cast<std::uint32_t>(i); });
   });
   return bins;
 }
 
-/// Quads of a tile whose first pixel is (x, y) that the rectangle touches.
-template <class Visit>
-void for_each_quad(const SampleRect& rect, int x, int y, Visit visit) {
-  const auto quad = [](int pixel, int origin) {
-    return std::clamp(pixel - origin, 0, DepthTile::kSide - 1) / DepthTile::kQuad;
-  };
-  for (int qy = quad(rect.y0, y); qy <= quad(rect.y1, y); ++qy)
-    for (int qx = quad(rect.x0, x); qx <= quad(rect.x1, x); ++qx) visit(qy * DepthTile::kQuads + qx);
-}
-
-void draw_group(const SplatCamera& camera, const GroupList& groups, const Bins& bins, std::uint32_t group, int x, int y,
-                DepthTile& tile) {
-  const SeenGroup& shown = bins.seen[group];
-  bool hidden = true;
-  for_each_quad(shown.rect, x, y, [&](int quad) {
-    hidden = hidden && shown.near > tile.full[quad] && (!tile.exact_exit || shown.far <= tile.least[quad]);
-  });
-  if (!hidden) {
-    const SphereGroups::Group& spheres = groups[group];
-    splat_into_depth_tile(camera, groups.spheres(group), spheres.begin, spheres.end, tile);
-  } else if (!tile.exact_exit) {
-    for_each_quad(shown.rect, x, y, [&](int quad) { tile.least[quad] = std::max(tile.least[quad], shown.far); });
-  }
-}
-
-void draw_tile(const SplatCamera& camera, const GroupList& groups, const Bins& bins, std::size_t index, int x, int y,
+/// Draws the runs of a tile's clusters from the nearest on, until what remains begins behind all that it shows.
+void draw_tile(const SplatCamera& camera, std::span<const ListedCluster> list, const Bins& bins, std::size_t index,
                DepthTile& tile) {
-  // Nearest groups first: they hide the others. The order does not matter for the entries.
-  thread_local std::vector<std::uint64_t> order;
-  order.clear();
+  std::vector<std::uint64_t> order;  // distances are not negative: their bits sort as they do
+  order.reserve(bins.start[index + 1] - bins.start[index]);
   for (std::uint32_t at = bins.start[index]; at < bins.start[index + 1]; ++at) {
-    const std::uint32_t group = bins.groups[at];
-    order.push_back(static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(bins.seen[group].near)) << 32 | group);
+    const std::uint32_t cluster = bins.clusters[at];
+    order.push_back(static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(bins.seen[cluster].near)) << 32 | cluster);
   }
-  // Sorted a few at a time, as the first ones often hide all others.
-  for (std::size_t begin = 0, count = 24; begin < order.size(); begin += count, count *= 2) {
-    const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(begin + count, order.size()));
-    if (last != order.end()) std::nth_element(first, last, order.end());
-    std::sort(first, last);
-    for (auto key = first; key != last; ++key) {
-      if (!tile.exact_exit && bins.seen[static_cast<std::uint32_t>(*key)].near > tile.farthest) {
-        float far = 0;
-        for (; key != order.end(); ++key) far = std::max(far, bins.seen[static_cast<std::uint32_t>(*key)].far);
-        for (float& least : tile.least) least = std::max(least, far);
-        return;
-      }
-      draw_group(camera, groups, bins, static_cast<std::uint32_t>(*key), x, y, tile);
+  std::sort(order.begin(), order.end());
+  const auto seen = [&](std::uint64_t key) -> const SeenCluster& { return bins.seen[static_cast<std::uint32_t>(key)]; };
+  // A few clusters at a time; of their runs those are drawn that begin before the next cluster.
+  constexpr std::size_t kAtOnce = 8;
+  std::vector<TileRun> waiting, ready;
+  for (std::size_t begin = 0; begin < order.size();) {
+    if (seen(order[begin]).near > tile.farthest) {
+      float far = 0;
+      for (; begin < order.size(); ++begin) far = std::max(far, seen(order[begin]).far);
+      for (float& least : tile.least) least = std::max(least, far);
+      break;
     }
+    const std::size_t end = std::min(begin + kAtOnce, order.size());
+    for (; begin < end; ++begin) {
+      const ListedCluster& cluster = list[static_cast<std::uint32_t>(order[begin])];
+      list_runs(camera, *cluster.spheres, *cluster.cluster, tile, waiting);
+    }
+    const auto rest =
+        end == order.size() ? waiting.end() : std::partition(waiting.begin(), waiting.end(), [&](const TileRun& run) {
+          return run.near <= seen(order[end]).near;
+        });
+    ready.assign(waiting.begin(), rest);
+    waiting.erase(waiting.begin(), rest);
+    std::sort(ready.begin(), ready.end(), [](const TileRun& a, const TileRun& b) {
+      return a.near != b.near ? a.near < b.near : a.begin < b.begin;
+    });
+    draw_runs(camera, ready, tile);
   }
+  if (!waiting.empty()) draw_runs(camera, waiting, tile);  // behind all that is seen: for their exits
 }
 
-void copy_tile(const DepthTile& tile, int x, int y, Image<float>& entry, Image<float>& exit) {
-  constexpr int kBlock = DepthTile::kBlock;
-  for (int j = 0; j < tile.height; ++j) {
-    float* to_entry = entry.row(y + j) + x;
-    float* to_exit = exit.row(y + j) + x;
-    for (int i = 0; i < tile.width; ++i) {
-      const int at =
-          (j / kBlock * DepthTile::kBlocks + i / kBlock) * kBlock * kBlock + j % kBlock * kBlock + i % kBlock;
-      to_entry[i] = tile.entry[at];
-      const float least = tile.least[j / DepthTile::kQuad * DepthTile::kQuads + i / DepthTile::kQuad];
-      to_exit[i] = tile.exact_exit || !(tile.exit[at] > 0.0f) ? tile.exit[at] : std::max(tile.exit[at], least);
-    }
+/// Nothing in the tile whose first pixel is (x, y).
+void clear_tile(int x, int y, Image<float>& entry, Image<float>& exit) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const int width = std::min(DepthTile::kSide, entry.width() - x);
+  for (int row = y; row < std::min(y + DepthTile::kSide, entry.height()); ++row) {
+    std::fill_n(entry.row(row) + x, width, kInfinity);
+    std::fill_n(exit.row(row) + x, width, -kInfinity);
   }
-}
-
-void draw(const View& view, std::span<const GroupedSpheres> sets, bool exact_exit, Image<float>& entry,
-          Image<float>& exit) {
-  const SplatCamera camera(view, 1);
-  const GroupList groups(sets);
-  const Bins bins = sort_into_tiles(camera, groups);
-  entry = Image<float>(camera.width, camera.height);
-  exit = Image<float>(camera.width, camera.height);
-  parallel_for(bins.start.size() - 1, 1, [&](std::size_t index, std::size_t) {
-    const int x = static_cast<int>(index) % bins.tiles_x * DepthTile::kSide,
-              y = static_cast<int>(index) / bins.tiles_x * DepthTile::kSide;
-    DepthTile tile;
-    start_depth_tile(camera, x, y, exact_exit, tile);
-    draw_tile(camera, groups, bins, index, x, y, tile);
-    copy_tile(tile, x, y, entry, exit);
-  });
 }
 
 }  // namespace
 
-void splat_depth(const View& view, const Spheres& spheres, Image<float>& entry, Image<float>& exit) {
-  const SphereGroups groups(spheres);
-  const GroupedSpheres set{spheres, &groups};
-  draw(view, {&set, 1}, true, entry, exit);
-}
-
 void splat_entries(const View& view, std::span<const GroupedSpheres> sets, Image<float>& entry, Image<float>& exit) {
-  draw(view, sets, false, entry, exit);
+  const SplatCamera camera(view, 1);
+  const std::vector<ListedCluster> list = listed(sets);
+  const Bins bins = sort_into_tiles(camera, list);
+  for (Image<float>* picture : {&entry, &exit})
+    if (picture->width() != camera.width || picture->height() != camera.height)
+      *picture = Image<float>(camera.width, camera.height);
+  parallel_for(bins.start.size() - 1, 1, [&](std::size_t index, std::size_t) {
+    const int x = static_cast<int>(index) % bins.tiles_x * DepthTile::kSide,
+              y = static_cast<int>(index) / bins.tiles_x * DepthTile::kSide;
+    if (bins.start[index] == bins.start[index + 1]) {
+      clear_tile(x, y, entry, exit);
+      return;
+    }
+    DepthTile tile;
+    start_depth_tile(camera, x, y, tile);
+    draw_tile(camera, list, bins, index, tile);
+    copy_depth_tile(tile, x, y, entry, exit);
+  });
 }
 
 }  // namespace meniscus
