@@ -129,33 +129,51 @@ void sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, 
   });
 }
 
-void box(const SplatCamera& camera, const SplatBox& box, float weight, ThicknessCanvas& canvas) {
+/// Length of the part of the ray that lies inside the box at `offset` from the eye and before it.
+HWY_INLINE Vec chord_of(const SplatCamera& camera, vec3 offset, vec3 half, Vec u, Vec v) {
   const Tag d;
-  const SampleRect rect = samples_of(camera, box);
+  // By the parameter t of origin + t direction, where direction is not a unit vector: forward goes by one.
+  Vec low = hn::Zero(d), high = hn::Set(d, 1e30f);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec across = hn::MulAdd(u, hn::Set(d, camera.right[axis]), hn::Mul(v, hn::Set(d, camera.up[axis])));
+    const Vec forward = hn::Set(d, camera.forward[axis]);
+    Vec direction = camera.perspective ? hn::Add(across, forward) : forward;
+    const Vec middle = camera.perspective ? hn::Set(d, offset[axis]) : hn::Sub(hn::Set(d, offset[axis]), across);
+    // A ray along the box's side: any steep slope tells inside from outside.
+    direction = hn::IfThenElse(hn::Lt(hn::Abs(direction), hn::Set(d, 1e-12f)), hn::Set(d, 1e-12f), direction);
+    const Vec slope = hn::Div(hn::Set(d, 1.0f), direction);
+    const Vec at = hn::Mul(middle, slope), reach = hn::Abs(hn::Mul(hn::Set(d, half[axis]), slope));
+    low = hn::Max(low, hn::Sub(at, reach));
+    high = hn::Min(high, hn::Add(at, reach));
+  }
+  const Vec chord = hn::Max(hn::Sub(high, low), hn::Zero(d));
+  if (!camera.perspective) return chord;
+  return hn::Mul(chord, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, hn::Set(d, 1.0f)))));
+}
+
+void box(const SplatCamera& camera, const SplatBox& box, float weight, bool steep, ThicknessCanvas& canvas) {
+  const Tag d;
+  SplatBox around = box;
+  if (steep) {
+    const vec3 offset = box.middle - camera.eye;
+    const float far = glm::dot(offset, camera.forward) + glm::dot(box.half, glm::abs(camera.forward));
+    around.half += 0.5f * camera.du * (camera.perspective ? std::max(far, 0.0f) : 1.0f);
+  }
+  const SampleRect rect = samples_of(camera, around);
   if (rect.empty()) return;
-  const Vec zero = hn::Zero(d), far = hn::Set(d, 1e30f);
   const vec3 offset = box.middle - camera.eye;
   for_each_vector(camera, rect, canvas, [&](float* values, Vec u, Vec v, auto valid) {
-    // By the parameter t of origin + t direction, where direction is not a unit vector: forward goes by one.
-    Vec low = zero, high = far;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vec across = hn::MulAdd(u, hn::Set(d, camera.right[axis]), hn::Mul(v, hn::Set(d, camera.up[axis])));
-      const Vec forward = hn::Set(d, camera.forward[axis]);
-      Vec direction = camera.perspective ? hn::Add(across, forward) : forward;
-      const Vec middle = camera.perspective ? hn::Set(d, offset[axis]) : hn::Sub(hn::Set(d, offset[axis]), across);
-      // A ray along the box's side: any steep slope tells inside from outside.
-      direction = hn::IfThenElse(hn::Lt(hn::Abs(direction), hn::Set(d, 1e-12f)), hn::Set(d, 1e-12f), direction);
-      const Vec slope = hn::Div(hn::Set(d, 1.0f), direction);
-      const Vec at = hn::Mul(middle, slope), reach = hn::Abs(hn::Mul(hn::Set(d, box.half[axis]), slope));
-      low = hn::Max(low, hn::Sub(at, reach));
-      high = hn::Min(high, hn::Add(at, reach));
+    if (!steep) {
+      add_to(values, hn::Mul(chord_of(camera, offset, box.half, u, v), hn::Set(d, weight)), valid);
+      return;
     }
-    Vec chord = hn::Mul(hn::Max(hn::Sub(high, low), zero), hn::Set(d, weight));
-    if (camera.perspective) {
-      const Vec one = hn::Set(d, 1.0f);
-      chord = hn::Mul(chord, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
-    }
-    add_to(values, chord, valid);
+    // Where sides are seen edge on, a sample is the mean over its area: of four places, no two in a row or column.
+    Vec sum = hn::Zero(d);
+    for (const vec2 place :
+         {vec2{-0.375f, 0.125f}, vec2{-0.125f, -0.375f}, vec2{0.125f, 0.375f}, vec2{0.375f, -0.125f}})
+      sum = hn::Add(sum, chord_of(camera, offset, box.half, hn::Add(u, hn::Set(d, place.x * camera.du)),
+                                  hn::Add(v, hn::Set(d, place.y * camera.dv))));
+    add_to(values, hn::Mul(sum, hn::Set(d, 0.25f * weight)), valid);
   });
 }
 
@@ -168,8 +186,8 @@ void AddPoints(const SplatCamera& camera, const float* x, const float* y, const 
 void AddSphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
   sphere(camera, centre, radius, weight, canvas);
 }
-void AddBox(const SplatCamera& camera, const SplatBox& one, float weight, ThicknessCanvas& canvas) {
-  box(camera, one, weight, canvas);
+void AddBox(const SplatCamera& camera, const SplatBox& one, float weight, bool steep, ThicknessCanvas& canvas) {
+  box(camera, one, weight, steep, canvas);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -197,8 +215,8 @@ void add_points(const SplatCamera& camera, const float* x, const float* y, const
 void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
   HWY_DYNAMIC_DISPATCH(AddSphere)(camera, centre, radius, weight, canvas);
 }
-void add_box(const SplatCamera& camera, const SplatBox& box, float weight, ThicknessCanvas& canvas) {
-  HWY_DYNAMIC_DISPATCH(AddBox)(camera, box, weight, canvas);
+void add_box(const SplatCamera& camera, const SplatBox& box, float weight, bool steep, ThicknessCanvas& canvas) {
+  HWY_DYNAMIC_DISPATCH(AddBox)(camera, box, weight, steep, canvas);
 }
 
 }  // namespace meniscus

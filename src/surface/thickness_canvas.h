@@ -30,6 +30,7 @@ void add_points(const SplatCamera& camera, const float* x, const float* y, const
 void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas);
 
 /// The same for a box along the axes of the world.
-void add_box(const SplatCamera& camera, const SplatBox& box, float weight, ThicknessCanvas& canvas);
+/// @param steep  rays run nearly along some of its sides: samples are means over their areas
+void add_box(const SplatCamera& camera, const SplatBox& box, float weight, bool steep, ThicknessCanvas& canvas);
 
 }  // namespace meniscus
