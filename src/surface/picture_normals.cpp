@@ -99,7 +99,7 @@ class PictureNormals {
   void find(std::size_t tile, int x0, int y0) {
     sparse_[tile] = is_sparse(x0, y0);
     const int step = sparse_[tile] ? 2 : 1, side = 4 * step, list = 2 * side;
-    // Squares of 8 x 8 share a list of particles; their quarters are packets.
+    // Squares of 8 x 8 normals share a list of particles; their quarters are packets.
     thread_local std::vector<Pixel> pixels;
     const int x1 = std::min(x0 + kNormalTileWidth, view_.width), y1 = std::min(y0 + kNormalTileHeight, view_.height);
     for (int ly = y0; ly < y1; ly += list)
@@ -119,14 +119,25 @@ class PictureNormals {
     thread_local std::vector<Pixel> left;
     left.clear();
     interpolate_normals(known_, x0, y0, kDepthsAlike * field_.options.spacing, buffers_, left);
-    // By squares of 8 x 8, which share a list, and in these by squares of 4 x 4.
-    const auto place = [](Pixel p) {
-      return ((std::int64_t{p.y / 8} * 65536 + p.x / 8) * 4 + (p.y / 4 % 2) * 2 + p.x / 4 % 2);
+    // By squares of 16 x 16, which share a list, and in these by squares of 4 x 4: packets are small.
+    constexpr int kSquare = 16, kPart = 4, kParts = kSquare / kPart;
+    constexpr std::size_t kPlaces = std::size_t{kNormalTileWidth / kPart} * (kNormalTileHeight / kPart);
+    const auto place = [&](Pixel p) {
+      const int x = p.x - x0, y = p.y - y0;
+      const int square = y / kSquare * (kNormalTileWidth / kSquare) + x / kSquare;
+      return static_cast<std::size_t>((square * kParts + y / kPart % kParts) * kParts + x / kPart % kParts);
     };
-    std::stable_sort(left.begin(), left.end(), [&](Pixel a, Pixel b) { return place(a) < place(b); });
-    for (std::size_t first = 0, last = 0; first < left.size(); first = last) {
-      while (last < left.size() && place(left[last]) / 4 == place(left[first]) / 4) ++last;
-      normals_of_pixels(field_, view_, std::span(left).subspan(first, last - first), buffers_);
+    std::size_t end[kPlaces + 1] = {};
+    for (const Pixel p : left) ++end[place(p) + 1];
+    for (std::size_t k = 0; k < kPlaces; ++k) end[k + 1] += end[k];
+    thread_local std::vector<Pixel> sorted;
+    sorted.resize(left.size());
+    for (const Pixel p : left) sorted[end[place(p)]++] = p;  // from here on ends, not beginnings
+    constexpr std::size_t kOfSquare = std::size_t{kParts} * kParts;
+    for (std::size_t square = 0, first = 0; square < kPlaces / kOfSquare; ++square) {
+      const std::size_t last = end[(square + 1) * kOfSquare - 1];
+      if (last > first) normals_of_pixels(field_, view_, std::span(sorted).subspan(first, last - first), buffers_);
+      first = last;
     }
   }
 

@@ -19,7 +19,7 @@ constexpr int kNormalTileWidth = 32, kNormalTileHeight = 16;
 constexpr float kLeastInterpolated = 4.0f;
 /// Interpolated are normals between those that differ by less than acos(1 - this), 6 degrees, and whose depths differ
 /// by less than this many spacings.
-constexpr float kNormalsAlike = 0.0055f, kDepthsAlike = 0.75f;
+constexpr float kNormalsAlike = 0.0055f, kDepthsAlike = 2.0f;
 
 /// Normals of pixels (2 i, 2 j) at (i, j), zero where none is known; as wide as whole vectors beyond the picture need.
 Image<vec3> known_normals(const View& view);
