@@ -32,6 +32,10 @@ TEST(Dispersion, ShadesEachChannelAsIfTheMaterialHadItsIndex) {
       Material one = material;
       one.ior += material.dispersion[k];
       one.dispersion = vec3{0.0f};
+      // Many pixels at a time are rounded otherwise.
+      EXPECT_NEAR(seen[k], slab(one, options, in_water)(4, 3)[k], 1e-6) << k;
+      // With another channel's index the pixel is shaded by itself.
+      one.dispersion[(k + 1) % 3] = 0.1f;
       EXPECT_EQ(seen[k], slab(one, options, in_water)(4, 3)[k]) << k;
     }
     options.dispersion = false;
