@@ -89,8 +89,9 @@ std::vector<float> mean_counts(const BandGrid& grid, const std::vector<BandBits>
   return means;
 }
 
-/// Whether rays through the box run nearly along an axis' plane: the sum of boxes then ends in steps that single rays
-/// would place to half a sample. Told for the whole picture, so that boxes beside each other stay without a seam.
+/// Whether all rays through the box run nearly along an axis' plane: the sum of boxes then ends in steps that single
+/// rays would place to half a sample (18 % of the water in lines along the walls). Told for the whole picture, so that
+/// boxes beside each other stay without a seam; views that see a wall edge on in one column alone do not pay for it.
 bool sees_sides(const Bounds& box, const SplatCamera& camera) {
   constexpr float kSteep = 0.2f;  // sine of the angle
   if (!camera.perspective)
@@ -106,7 +107,7 @@ bool sees_sides(const Bounds& box, const SplatCamera& camera) {
       low = std::min(low, sine);
       high = std::max(high, sine);
     }
-    if (low < kSteep && high > -kSteep) return true;
+    if (low > -kSteep && high < kSteep) return true;
   }
   return false;
 }

@@ -148,7 +148,9 @@ TEST(Thickness, OfCountedCellsIsThatOfTheirParticlesForAnyNumberOfThreads) {
         if (summed[i] > 4 * kSpacing) off.push_back(std::abs(counted[i] / summed[i] - 1));
       }
       ASSERT_GT(off.size(), 1000u);
-      EXPECT_LT(quantile(off, 0.95), 0.1);
+      // Along an axis, cells end where rows of particles are cut: a few samples are off there.
+      const bool along_axis = projection == Projection::orthographic && direction.x == 0.0f;
+      EXPECT_LT(quantile(off, 0.95), along_axis ? 0.085 : 0.06);
       EXPECT_NEAR(counted_sum / sum, 1.0, 0.01);
       for (const int threads : {1, 2, 5}) {
         const ThreadLimit limit(threads);
