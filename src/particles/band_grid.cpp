@@ -153,11 +153,12 @@ class BandGrid::Build {
     }
     g.count_.resize(std::size_t{pages} * kCells);
     parallel_for(pages, kBlocks, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t page = begin; page < end; ++page)
-        for (BandPart& part : parts_) {
-          std::uint32_t* count = &g.count_[page * kCells];
+      for (std::size_t page = begin; page < end; ++page) {
+        std::uint32_t* count = &g.count_[page * kCells];
+        std::fill_n(count, kCells, 0u);
+        for (BandPart& part : parts_)
           part.for_each(keys_[own_[page]], [&](std::size_t cell, std::uint32_t counter) { count[cell] += counter; });
-        }
+      }
     });
   }
 
@@ -168,6 +169,7 @@ class BandGrid::Build {
     g.kind_.assign(kCells, open);
     g.full_.assign(kSide, 0);
     g.amidst_.assign(kSide, 0);
+    g.beside_.assign(kSide, 0);
     if (options_.well_filled == 0) return;
     std::vector<BandBits> hidden(blocks);
     std::vector<BandSides> sides(blocks);
@@ -194,14 +196,19 @@ class BandGrid::Build {
     for (BandBits& block : full)
       for (std::uint64_t& word : block) word = ~word;
     erode(full, sides, 1, true);
+    std::vector<BandBits> apart = hidden;  // cells that neither are hidden nor touch one that is
+    for (BandBits& block : apart)
+      for (std::uint64_t& word : block) word = ~word;
+    erode(apart, sides, 1, true);
     std::uint32_t pages = 1;
     for (std::size_t block = 0; block < blocks; ++block) {
       g.deep_ = g.deep_ || deep_[block] != BandBits{};
       BandBits none;
       none.fill(~std::uint64_t{0});
-      if (hidden[block] != BandBits{} || full[block] != none) g.kind_page_[block] = pages++;
+      if (apart[block] != none) g.kind_page_[block] = pages++;
     }
-    g.kind_.resize(std::size_t{pages} * kCells, open);
+    g.kind_.resize(std::size_t{pages} * kCells);
+    g.beside_.resize(std::size_t{pages} * kSide, 0);
     g.full_.resize(std::size_t{pages} * kSide, 0);
     g.amidst_.resize(std::size_t{pages} * kSide, 0);
     parallel_for(blocks, kBlocks, [&](std::size_t begin, std::size_t end) {
@@ -215,6 +222,7 @@ class BandGrid::Build {
                                                                               : open;
           g.full_[page * kSide + z] = ~full[block][z];
           g.amidst_[page * kSide + z] = amidst[block][z];
+          g.beside_[page * kSide + z] = ~(apart[block][z] | hidden[block][z]);
         }
       }
     });
@@ -293,10 +301,10 @@ class BandGrid::Build {
     const std::size_t padded = g.kept_ + kPadding;
     // No values yet: the threads that write them meet the memory first.
     for (auto axis : {&BandGrid::x_, &BandGrid::y_, &BandGrid::z_}) {
-      (g.*axis).reset(new float[padded]);
+      g.*axis = paged_array<float>(padded);
       std::fill_n(&(g.*axis)[g.kept_], kPadding, kFarAway);
     }
-    g.index_.reset(new std::uint32_t[padded]);
+    g.index_ = paged_array<std::uint32_t>(padded);
     float *x = g.x_.get(), *y = g.y_.get(), *z = g.z_.get();
     std::uint32_t* index = g.index_.get();
     parallel_for(parts_.size(), 1, [&](std::size_t p, std::size_t) {
@@ -342,7 +350,7 @@ BandGrid::BandGrid(const Particles& particles, const Options& options)
     return;
   }
   for (auto axis : {&BandGrid::x_, &BandGrid::y_, &BandGrid::z_}) {
-    (this->*axis).reset(new float[kPadding]);
+    this->*axis = paged_array<float>(kPadding);
     std::fill_n(&(this->*axis)[0], kPadding, kFarAway);
   }
 }
@@ -411,7 +419,7 @@ std::uint64_t BandGrid::memory_bytes() const {
   };
   return 4 * sizeof(float) * static_cast<std::uint64_t>(kept_ + kPadding) + bytes(corner_) + bytes(table_) +
          bytes(hashed_) + bytes(first_) + bytes(page_) + bytes(kind_page_) + bytes(start_) + bytes(count_) +
-         bytes(kind_) + bytes(full_) + bytes(amidst_);
+         bytes(kind_) + bytes(full_) + bytes(amidst_) + bytes(beside_);
 }
 
 }  // namespace meniscus

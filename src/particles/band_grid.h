@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 
 #include "meniscus/base.h"
+#include "particles/band_memory.h"
 
 namespace meniscus {
 
@@ -74,7 +75,12 @@ class BandGrid {
   const std::uint64_t* amidst(int block) const {
     return &amidst_[std::size_t{kind_page_[static_cast<std::size_t>(block)]} * kSide];
   }
-  /// Whether all of a block's cells are open (and all its particles kept): the common case in spray.
+  /// Which open cells of a block touch a hidden (or deep) one, in the same form.
+  const std::uint64_t* beside(int block) const {
+    return &beside_[std::size_t{kind_page_[static_cast<std::size_t>(block)]} * kSide];
+  }
+  /// Whether all of a block's cells are open (and all its particles kept) and touch no hidden one: the common case in
+  /// spray.
   bool all_open(int block) const { return kind_page_[static_cast<std::size_t>(block)] == 0; }
   Run run(int block, int cell) const { return run(block, cell, cell); }
   /// Kept particles of the cells first .. last (both included) of a block.
@@ -134,10 +140,11 @@ class BandGrid {
   std::vector<std::uint32_t> first_;      ///< kept particle by block, and one more at the end
   std::vector<std::uint32_t> page_;       ///< of start_ and count_, by block; shared by those of a single particle
   std::vector<std::uint32_t> kind_page_;  ///< of kind_ and full_, by block; 0: all are open
-  std::vector<std::uint32_t> start_;      ///< by page and cell, one more a page: from the block's first particle on
-  std::vector<std::uint32_t> count_;      ///< by page and cell
-  std::vector<Kind> kind_;                ///< by page and cell
+  PagedVector<std::uint32_t> start_;      ///< by page and cell, one more a page: from the block's first particle on
+  PagedVector<std::uint32_t> count_;      ///< by page and cell
+  PagedVector<Kind> kind_;                ///< by page and cell
   std::vector<std::uint64_t> amidst_;     ///< by page, z; bit 8 y + x
+  std::vector<std::uint64_t> beside_;     ///< by page, z; bit 8 y + x
   std::vector<std::uint64_t> full_;       ///< by page, z; bit 8 y + x
 };
 

@@ -1,10 +1,11 @@
 /// How many particles each cell holds, counted by parts of the input.
 #pragma once
 
+#include <algorithm>
 #include <bit>
-#include <memory>
 
 #include "particles/band_cells.h"
+#include "particles/band_memory.h"
 
 namespace meniscus {
 
@@ -72,7 +73,7 @@ class BandPart {
 
  private:
   static constexpr std::size_t kFew = 6;
-  static constexpr std::size_t kPagesAtOnce = 32;
+  static constexpr std::size_t kFewestAtOnce = 32, kMostAtOnce = 2048;  ///< pages
   struct Entry {
     std::uint64_t key = 0;
     Counter* page = nullptr;
@@ -82,9 +83,14 @@ class BandPart {
   };
 
   Counter* new_page() {
-    if (pages_used_ == kPagesAtOnce * pages_.size())
-      pages_.push_back(std::make_unique<Counter[]>(kPagesAtOnce * kCells));
-    return &pages_.back()[pages_used_++ % kPagesAtOnce * kCells];
+    if (pages_left_ == 0) {
+      pages_left_ = std::clamp(pages_made_, kFewestAtOnce, kMostAtOnce);
+      pages_made_ += pages_left_;
+      pages_.emplace_back().resize(pages_left_ * kCells);
+    }
+    Counter* page = &pages_.back()[--pages_left_ * kCells];
+    std::fill_n(page, kCells, Counter{0});
+    return page;
   }
   std::int32_t find(std::uint64_t key) const;
   std::int32_t find_or_add(std::uint64_t key);
@@ -112,9 +118,9 @@ class BandPart {
   BandCells cells_;
   std::size_t begin_, end_;
   bool dense_;
-  std::vector<Counter*> table_;  ///< by place in the dense table
-  std::vector<std::unique_ptr<Counter[]>> pages_;
-  std::size_t pages_used_ = 0;
+  std::vector<Counter*> table_;              ///< by place in the dense table
+  std::vector<PagedVector<Counter>> pages_;  ///< several at once
+  std::size_t pages_made_ = 0, pages_left_ = 0;
   std::vector<std::int32_t> hashed_;  ///< entry or -1, by hash; a power of two, at most half full
   std::vector<Entry> entries_;
 };

@@ -14,17 +14,26 @@ void SphereSet::add(const SphereSet& others) {
     (this->*member).insert((this->*member).end(), (others.*member).begin(), (others.*member).end());
 }
 
-SphereSet entry_spheres(const RaycastField& field) {
+void forget_amidst(RaycastField& field) {
+  constexpr std::size_t kBlocks = 64;
+  const BandGrid& grid = field.grid;
+  if (!grid.has_hidden()) return;
+  parallel_for(static_cast<std::size_t>(grid.blocks()), kBlocks, [&](std::size_t begin, std::size_t end) {
+    for (int block = static_cast<int>(begin); block < static_cast<int>(end); ++block) {
+      const std::uint64_t* amidst = grid.amidst(block);
+      for (int z = 0; z < BandGrid::kSide; ++z)
+        for (std::uint64_t word = amidst[z]; word != 0; word &= word - 1) {
+          const BandGrid::Run run = grid.run(block, 64 * z + __builtin_ctzll(word));
+          for (std::size_t i = run.begin; i < run.end; ++i) field.entry_radius[i] = 0.0f;
+        }
+    }
+  });
+}
+
+SphereSet hidden_cell_spheres(const RaycastField& field) {
   const BandGrid& grid = field.grid;
   SphereSet spheres;
-  if (grid.size() == 0) return spheres;
-  if (!grid.has_hidden()) {
-    spheres.x.assign(grid.x(), grid.x() + grid.size());
-    spheres.y.assign(grid.y(), grid.y() + grid.size());
-    spheres.z.assign(grid.z(), grid.z() + grid.size());
-    spheres.radius = field.entry_radius;
-    return spheres;
-  }
+  if (!grid.has_hidden()) return spheres;
   // A hidden cell's sphere holds the cell alone: the spheres of particles that are left out reach no farther than
   // into the hidden cells around theirs, because no radius is larger than a cell.
   constexpr std::size_t kBlocks = 64;
@@ -35,22 +44,17 @@ SphereSet entry_spheres(const RaycastField& field) {
   parallel_for(blocks, kBlocks, [&](std::size_t begin, std::size_t end) {
     SphereSet& mine = pieces[begin / kBlocks];
     for (int block = static_cast<int>(begin); block < static_cast<int>(end); ++block) {
+      if (grid.all_open(block)) continue;
       const BandGrid::Kind* kinds = grid.kinds(block);
       const std::uint64_t* amidst = grid.amidst(block);
-      for (int cell = 0; cell < BandGrid::kCells; ++cell) {
-        if ((amidst[cell / 64] >> cell % 64 & 1) != 0) continue;
-        const BandGrid::Run run = grid.run(block, cell);
-        for (std::size_t i = run.begin; i < run.end; ++i) mine.add(grid.position(i), field.entry_radius[i]);
-        if (kinds[cell] != BandGrid::open)
-          mine.add(grid.low(block) + cell_size * (vec3(cell % 8, cell / 8 % 8, cell / 64) + 0.5f), around_cell);
-      }
+      for (int z = 0; z < BandGrid::kSide; ++z)
+        for (std::uint64_t word = ~amidst[z]; word != 0; word &= word - 1) {
+          const int cell = 64 * z + __builtin_ctzll(word);
+          if (kinds[cell] != BandGrid::open)
+            mine.add(grid.low(block) + cell_size * (vec3(cell % 8, cell / 8 % 8, cell / 64) + 0.5f), around_cell);
+        }
     }
   });
-  std::size_t total = 0;
-  for (const SphereSet& piece : pieces) total += piece.size();
-  for (auto member : {&SphereSet::x, &SphereSet::y, &SphereSet::z, &SphereSet::radius}) {
-    (spheres.*member).reserve(total);
-  }
   for (const SphereSet& piece : pieces) spheres.add(piece);
   return spheres;
 }

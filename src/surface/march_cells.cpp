@@ -62,10 +62,10 @@ void MarchCells::mark_reached(const RaycastField& field) {
                       static_cast<std::uint8_t>(unknown));
     }
   };
-  for (int block = 0; block < grid.blocks(); ++block) {  // the cells whose particles are left out
+  for (int block = 0; block < grid.blocks(); ++block) {  // the cells whose particles are left out or have no sphere
     if (grid.all_open(block)) continue;
     for (int i = 0; i < BandGrid::kCells; ++i) {
-      if (grid.kinds(block)[i] != BandGrid::deep) continue;
+      if (grid.kinds(block)[i] == BandGrid::open) continue;
       const vec3 low = grid.low(block) + grid.cell_size() * vec3(i % 8, i / 8 % 8, i / 64),
                  high = low + grid.cell_size();
       for (int z = cell(low.z, 2); z <= cell(high.z, 2); ++z)

@@ -1,48 +1,119 @@
 #include "surface/masses.h"
 
-#include "surface/packet.h"
+#include <cmath>
 
 namespace meniscus {
 namespace {
 
-/// Masses and radii of the particles first .. last (not included), at most sixteen that are near each other.
-void find_packet(RaycastField& field, const MassRule& rule, std::size_t first, std::size_t last, PacketList& list) {
-  PacketPoints points;
-  alignas(64) float density[kPacket];
-  for (std::size_t l = 0; l < kPacket; ++l) {
-    const std::size_t from = std::min(first + l, last - 1);
-    points.x[l] = field.grid.x()[from];
-    points.y[l] = field.grid.y()[from];
-    points.z[l] = field.grid.z()[from];
+/// Of the particles that a cell amidst the water holds, the shares between which a cell is about full.
+constexpr float kFull = 0.85f, kPacked = 1.3f;
+/// Reach of first sums in full cells, spacings: beyond it a particle adds less than 0.01.
+constexpr float kNear = 1.5f;
+/// Particles that are looked at together lie in so many cells along each axis.
+constexpr int kTogether = 2;
+
+class MassBlock {
+ public:
+  MassBlock(RaycastField& field, const MassRule& rule) : field_(field), rule_(rule) {
+    const float across = field.grid.cell_size() / field.options.spacing, inside = across * across * across;
+    full_ = static_cast<std::uint32_t>(std::ceil(kFull * inside));
+    packed_ = static_cast<std::uint32_t>(kPacked * inside);
   }
-  density_packet(field, points, static_cast<PacketMask>((1u << (last - first)) - 1u), true, list, density);
-  for (std::size_t i = first; i < last; ++i) {
-    field.mass[i] = mass_at(rule, density[i - first]);
-    field.entry_radius[i] = entry_radius_at(field.options, density[i - first]);
+
+  void find(int block) {
+    const BandGrid& grid = field_.grid;
+    const BandGrid::Run all = grid.run(block);
+    if (all.begin == all.end) return;
+    for (int z = 0; z < BandGrid::kSide; z += kTogether)
+      for (int y = 0; y < BandGrid::kSide; y += kTogether)
+        for (int x = 0; x < BandGrid::kSide; x += kTogether) find_cells(block, x, y, z);
   }
-}
+
+ private:
+  /// The particles of a few cells.
+  void find_cells(int block, int x, int y, int z) {
+    const BandGrid& grid = field_.grid;
+    const BandGrid::Kind* kinds = grid.kinds(block);
+    const std::uint64_t* beside = grid.beside(block);
+    for (int dz = 0; dz < kTogether; ++dz)
+      for (int dy = 0; dy < kTogether; ++dy)
+        for (int dx = 0; dx < kTogether; ++dx) {
+          const int cell = ((z + dz) * BandGrid::kSide + y + dy) * BandGrid::kSide + x + dx;
+          if (kinds[cell] != BandGrid::open) continue;
+          const BandGrid::Run run = grid.run(block, cell);
+          const std::size_t count = run.end - run.begin;
+          const bool likely_full = count >= full_ && count <= packed_ && (beside[cell / 64] >> cell % 64 & 1) != 0;
+          for (std::size_t i = run.begin; i < run.end; ++i) {
+            if (!likely_full) {
+              add(i);
+              continue;
+            }
+            if (near_.count == MassPoints::kMost) flush_near();
+            append(i, near_);
+          }
+        }
+    flush_near();
+    flush();
+  }
+
+  void append(std::size_t i, MassPoints& points) const {
+    points.index[points.count] = static_cast<std::uint32_t>(i);
+    points.x[points.count] = field_.grid.x()[i];
+    points.y[points.count] = field_.grid.y()[i];
+    points.z[points.count] = field_.grid.z()[i];
+    ++points.count;
+  }
+  void add(std::size_t i) {
+    if (points_.count == MassPoints::kMost) flush();
+    append(i, points_);
+  }
+
+  void sum(MassPoints& points, float reach) {
+    for (std::size_t i = points.count; i % kPacket != 0; ++i) {  // lanes that are not looked at
+      points.x[i] = points.x[0];
+      points.y[i] = points.y[0];
+      points.z[i] = points.z[0];
+    }
+    unit_densities(field_, points, reach, list_, density_);
+  }
+
+  /// What the nearest particles alone make full, and not packed, has a mass of one and the usual radius.
+  void flush_near() {
+    if (near_.count == 0) return;
+    sum(near_, std::min(kNear * field_.options.spacing, field_.options.smoothing_length));
+    bool full[MassPoints::kMost];
+    for (std::size_t i = 0; i < near_.count; ++i) full[i] = density_[i] >= rule_.full_density && density_[i] <= 1.0f;
+    for (std::size_t i = 0; i < near_.count; ++i)
+      if (!full[i]) add(near_.index[i]);
+    near_.count = 0;
+  }
+
+  void flush() {
+    if (points_.count == 0) return;
+    sum(points_, field_.options.smoothing_length);
+    for (std::size_t i = 0; i < points_.count; ++i) {
+      field_.mass[points_.index[i]] = mass_at(rule_, density_[i]);
+      field_.entry_radius[points_.index[i]] = entry_radius_at(field_.options, density_[i]);
+    }
+    points_.count = 0;
+  }
+
+  RaycastField& field_;
+  const MassRule& rule_;
+  std::size_t full_ = 0, packed_ = 0;
+  MassPoints near_, points_;
+  PacketList list_;
+  alignas(64) float density_[MassPoints::kMost];
+};
 
 }  // namespace
 
 void find_masses(RaycastField& field) {
-  constexpr std::size_t kBlocks = 4;
+  constexpr std::size_t kBlocks = 8;
   const MassRule rule = mass_rule(field.options);
-  const BandGrid& grid = field.grid;
-  parallel_for(static_cast<std::size_t>(grid.blocks()), kBlocks, [&](std::size_t begin, std::size_t end) {
-    PacketList list;
-    for (int block = static_cast<int>(begin); block < static_cast<int>(end); ++block) {
-      const BandGrid::Kind* kinds = grid.kinds(block);
-      for (int cell = 0; cell < BandGrid::kCells; ++cell) {
-        if (kinds[cell] != BandGrid::open) continue;
-        // Packets are of this cell and the next one in its row.
-        BandGrid::Run run = grid.run(block, cell);
-        if (run.begin == run.end) continue;
-        if (cell % BandGrid::kSide + 1 < BandGrid::kSide && kinds[cell + 1] == BandGrid::open)
-          run.end = grid.run(block, ++cell).end;
-        for (std::size_t i = run.begin; i < run.end; i += kPacket)
-          find_packet(field, rule, i, std::min(i + kPacket, run.end), list);
-      }
-    }
+  parallel_for(static_cast<std::size_t>(field.grid.blocks()), kBlocks, [&](std::size_t begin, std::size_t end) {
+    MassBlock piece(field, rule);
+    for (std::size_t block = begin; block < end; ++block) piece.find(static_cast<int>(block));
   });
 }
 

@@ -1,12 +1,29 @@
 /// Masses of particles with few neighbours.
 #pragma once
 
+#include "surface/packet.h"
 #include "surface/raycast_field.h"
 
 namespace meniscus {
 
 /// Sets field.mass and field.entry_radius by the rule of raycast_field.h, from the density of unit masses at every
-/// particle that is not in a hidden cell.
+/// particle that is not in a hidden cell. Where a cell touches a hidden one and holds about as many particles as a cell
+/// amidst the water, a sum over the nearest particles comes first, which seldom leaves anything to ask.
 void find_masses(RaycastField& field);
+
+/// Points near each other, at which densities are summed over one list of particles.
+struct MassPoints {
+  static constexpr std::size_t kMost = 64;
+  std::size_t count = 0;
+  std::uint32_t index[kMost];  ///< sorted
+  alignas(64) float x[kMost];
+  alignas(64) float y[kMost];
+  alignas(64) float z[kMost];
+};
+
+/// rho of unit masses, in relation to the density inside the water, at all of the points, of the particles nearer than
+/// `reach` to the points' box: all that contribute when that is the smoothing length, else a lower bound.
+/// @param density  MassPoints::kMost values
+void unit_densities(const RaycastField& field, const MassPoints& points, float reach, PacketList& list, float* density);
 
 }  // namespace meniscus

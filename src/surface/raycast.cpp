@@ -45,9 +45,20 @@ class RaycastSurface final : public Surface {
       find_sized_masses(field_);
     else if (field_.options.keep_thin)
       find_masses(field_);
-    spheres_ = entry_spheres(field_);
-    for (const RaycastField& level : field_.coarser) spheres_.add(entry_spheres(level));
-    groups_ = SphereGroups(spheres());
+    for_each_level(field_, [&](RaycastField& level) {
+      forget_amidst(level);
+      hidden_cells_.add(hidden_cell_spheres(level));
+    });
+    for_each_level(field_, [&](const RaycastField& level) {
+      const std::size_t kept = level.grid.size();
+      const Spheres spheres{{level.grid.x(), kept}, {level.grid.y(), kept}, {level.grid.z(), kept}, level.entry_radius};
+      groups_.emplace_back(spheres);
+      spheres_.push_back({spheres, nullptr});
+    });
+    const Spheres cells{hidden_cells_.x, hidden_cells_.y, hidden_cells_.z, hidden_cells_.radius};
+    groups_.emplace_back(cells);
+    spheres_.push_back({cells, nullptr});
+    for (std::size_t k = 0; k < groups_.size(); ++k) spheres_[k].groups = &groups_[k];
   }
 
   SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
@@ -110,8 +121,6 @@ class RaycastSurface final : public Surface {
   }
 
  private:
-  Spheres spheres() const { return {spheres_.x, spheres_.y, spheres_.z, spheres_.radius}; }
-
   /// Whether rays of this view start inside the water.
   bool starts_inside(const View& view) const {
     if (view.projection != Projection::perspective || field_.grid.size() == 0) return false;
@@ -126,8 +135,7 @@ class RaycastSurface final : public Surface {
     SurfaceBuffers buffers;
     buffers.eye_in_water = starts_inside(view);
     if (!buffers.eye_in_water) {
-      const GroupedSpheres all{spheres(), &groups_};
-      splat_entries(view, {&all, 1}, buffers.entry, buffers.exit);
+      splat_entries(view, spheres_, buffers.entry, buffers.exit);
       start_where_hidden(view, buffers);
       return buffers;
     }
@@ -186,8 +194,9 @@ class RaycastSurface final : public Surface {
   float filter_tolerance() const { return 0.5f * field_.least_spacing; }
 
   RaycastField field_;
-  SphereSet spheres_;
-  SphereGroups groups_;
+  SphereSet hidden_cells_;
+  std::vector<SphereGroups> groups_;     ///< by level, and those of hidden cells
+  std::vector<GroupedSpheres> spheres_;  ///< the same: the field's own arrays, and hidden_cells_
   mutable std::once_flag cells_made_;
   mutable std::optional<MarchCells> cells_;  ///< made when rays are followed for the first time
 };

@@ -127,20 +127,25 @@ RaycastField make_field(const Particles& particles, const RaycastOptions& given,
   field.scale = volume * kernel_value(options.kernel, 0.0f, options.smoothing_length);
   field.step = options.step * options.smoothing_length;
   const std::size_t count = field.grid.size();
-  field.mass.assign(count + BandGrid::kPadding, 1.0f);
-  std::fill(field.mass.begin() + static_cast<std::ptrdiff_t>(count), field.mass.end(), 0.0f);
-  field.entry_radius.assign(count, entry_radius_at(options, 1.0f));
-  if (!colours.empty()) {
-    field.red.resize(count + BandGrid::kPadding, 0.0f);
-    field.green.resize(count + BandGrid::kPadding, 0.0f);
-    field.blue.resize(count + BandGrid::kPadding, 0.0f);
-    for (std::size_t i = 0; i < count; ++i) {
+  field.mass.resize(count + BandGrid::kPadding);
+  std::fill_n(field.mass.begin() + static_cast<std::ptrdiff_t>(count), BandGrid::kPadding, 0.0f);
+  field.entry_radius.resize(count);
+  if (!colours.empty())
+    for (auto colour : {&RaycastField::red, &RaycastField::green, &RaycastField::blue})
+      (field.*colour).resize(count + BandGrid::kPadding, 0.0f);
+  const float radius = entry_radius_at(options, 1.0f);
+  constexpr std::size_t kGrain = 1 << 15;
+  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    std::fill(&field.mass[begin], &field.mass[begin] + (end - begin), 1.0f);
+    std::fill(&field.entry_radius[begin], &field.entry_radius[begin] + (end - begin), radius);
+    if (colours.empty()) return;
+    for (std::size_t i = begin; i < end; ++i) {
       const vec3 colour = colours[field.grid.given_index(i)];
       field.red[i] = colour.x;
       field.green[i] = colour.y;
       field.blue[i] = colour.z;
     }
-  }
+  });
   return field;
 }
 

@@ -17,8 +17,8 @@ namespace meniscus {
 struct RaycastField {
   RaycastOptions options;               ///< checked, every length resolved
   BandGrid grid;                        ///< cells of one smoothing length
-  std::vector<float> mass;              ///< m_j by sorted index, padded like the grid's arrays
-  std::vector<float> entry_radius;      ///< m by sorted index: the sphere outside of which j makes no surface
+  PagedVector<float> mass;              ///< m_j by sorted index, padded like the grid's arrays
+  PagedVector<float> entry_radius;      ///< m by sorted index: the sphere outside of which j makes no surface
   std::vector<float> red, green, blue;  ///< linear, by sorted index, padded; empty without colours
   float scale = 0;                      ///< spacing^3 W(0, h): what a unit mass adds to rho at its own place
   float step = 0;                       ///< m, of the march
@@ -27,7 +27,7 @@ struct RaycastField {
   std::vector<float> per_spacing, per_smoothing;
   std::vector<RaycastField> coarser;  ///< levels of larger particles, ascending; empty where all are alike
 
-  float least_spacing = 0;            ///< m, of the smallest particle of all levels
+  float least_spacing = 0;  ///< m, of the smallest particle of all levels
 
   bool has_colours() const { return !red.empty(); }
   bool has_sizes() const { return !per_spacing.empty(); }

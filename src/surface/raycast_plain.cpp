@@ -27,7 +27,7 @@ class PlainRaycastSurface final : public Surface {
     StageTimer timer(times, "masses");
     if (!field_.options.keep_thin) return;
     SizedMassRules rules(field_.options);
-    std::vector<float> mass(field_.mass);
+    PagedVector<float> mass(field_.mass);
     for (std::size_t i = 0; i < field_.grid.size(); ++i) {
       const float density = density_at(field_.grid.position(i));
       mass[i] = mass_at(rules.rule(spacing_[i], smoothing_[i]), density);

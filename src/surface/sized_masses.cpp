@@ -8,8 +8,8 @@ namespace meniscus {
 namespace {
 
 /// Sets the masses and entry radii of one level's particles.
-void find_level(const RaycastField& all, const RaycastField& level, std::vector<float>& mass,
-                std::vector<float>& entry_radius) {
+void find_level(const RaycastField& all, const RaycastField& level, PagedVector<float>& mass,
+                PagedVector<float>& entry_radius) {
   constexpr std::size_t kBlocks = 4;
   const auto& grid = level.grid;
   const auto find_packet = [&](std::size_t first, std::size_t last, SizedMassRules& rules, PacketList& list) {
@@ -45,7 +45,7 @@ void find_level(const RaycastField& all, const RaycastField& level, std::vector<
 }  // namespace
 
 void find_sized_masses(RaycastField& field) {
-  std::vector<std::vector<float>> masses;
+  std::vector<PagedVector<float>> masses;
   for_each_level(field, [&](RaycastField& level) {
     masses.push_back(level.mass);
     find_level(field, level, masses.back(), level.entry_radius);
