@@ -69,5 +69,33 @@ TEST(FrameSizes, ThatDifferAreToldOfUnlessAskedFor) {
   EXPECT_TRUE(survey_particles(particles, options).notes.empty());
 }
 
+TEST(FrameSizes, LetLargeParticlesFillTheirWater) {
+  // With one size for all the large particles are islands, or the small ones a blob.
+  const Particles particles = two_resolutions();
+  SurveyOptions survey_options;
+  survey_options.up = Axis::y;
+  const Survey survey = survey_particles(particles, survey_options);
+  PictureOptions picture;
+  picture.width = 120;
+  picture.height = 90;
+  picture.antialias = Antialias::off;
+  picture.optics.refraction = RefractionMethod::thickness;
+  picture.ground = GroundStyle::none;
+  picture.surface.spacing = 0.04f;
+  picture.camera.elevation_deg = 89;
+  const auto covered = [&](const PictureOptions& options) {
+    const FramePicture frame = render_frame(particles, settings_of(survey, options));
+    double sum = 0;
+    for (const float c : frame.buffers.coverage) sum += c;
+    return sum / static_cast<double>(frame.buffers.coverage.size());
+  };
+  const double alike = covered(picture);
+  picture.sizes.radius = "pscale";
+  const double own = covered(picture);
+  EXPECT_GT(own, 1.1 * alike);
+  picture.method = SurfaceMethod::surfels;
+  EXPECT_THROW(covered(picture), Error);
+}
+
 }  // namespace
 }  // namespace meniscus
