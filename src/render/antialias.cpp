@@ -12,7 +12,6 @@ namespace {
 
 constexpr int kGrid = 4;  ///< rays along each edge of a pixel
 constexpr std::size_t kRays = kGrid * kGrid;
-constexpr std::size_t kPixelsAtOnce = 16384;  ///< bounds the memory: about 80 bytes a ray
 constexpr float kFoldCosine = 0.819f;         ///< of 35 degrees
 
 /// The rays of a pixel in the order in which they are drawn: four, one in each row and column of its grid; four more of
@@ -165,7 +164,7 @@ std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuff
 
 void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,
                    const OpticsInputs& optics, std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers,
-                   Image<vec3>& radiance) {
+                   Image<vec3>& radiance, std::size_t at_once) {
   // What refine() looks at must stay as see() returned it, so the means are kept aside until the end.
   std::vector<float> coverage(pixels.size()), thickness(pixels.size());
   const std::size_t width = static_cast<std::size_t>(view.width);
@@ -192,8 +191,8 @@ void refine_pixels(const Surface& surface, const View& view, const Scene& scene,
       }
   };
   std::vector<std::size_t> left, rough;  // pixels of a batch that want more rays
-  for (std::size_t first = 0; first < pixels.size(); first += kPixelsAtOnce) {
-    const std::span<const std::uint32_t> batch = pixels.subspan(first, std::min(kPixelsAtOnce, pixels.size() - first));
+  for (std::size_t first = 0; first < pixels.size(); first += at_once) {
+    const std::span<const std::uint32_t> batch = pixels.subspan(first, std::min(at_once, pixels.size() - first));
     samples.resize(batch.size());
     left.resize(batch.size());
     std::iota(left.begin(), left.end(), std::size_t{0});

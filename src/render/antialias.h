@@ -14,11 +14,14 @@ namespace meniscus {
 std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, const Scene& scene,
                                              float spacing, const SceneBuffers* solids = nullptr);
 
+constexpr std::size_t kPixelsAtOnce = 16384;  ///< bounds the memory: about 650 bytes a pixel
+
 /// Draws those pixels anew as the average of 4 x 4 rays in each, or of four where those see about the same; coverage
 /// and thickness become means as well.
+/// @param at_once  pixels whose rays are cast together: more for surfaces that do much work for each question
 void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,
                    const OpticsInputs& optics, std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers,
-                   Image<vec3>& radiance);
+                   Image<vec3>& radiance, std::size_t at_once = kPixelsAtOnce);
 
 /// The buffers of a picture of twice the size at its own size: coverage and thickness are means; depth, normal and
 /// the rest are of the nearest of the four, colour is the mean of those that show water.

@@ -18,7 +18,8 @@ constexpr std::size_t kMostHeads = 64;  ///< headers that are looked at, evenly 
 constexpr std::size_t kSurveyed = 64;   ///< frames that are read beforehand, as SurveyOptions::most_frames
 constexpr double kBinaryRate = 0.4e9;   ///< bytes a second of binary files
 constexpr double kTextRate = 90e6, kInflateRate = 150e6;
-constexpr std::uint64_t kLibraries = 24u << 20;  ///< what the program grows by when all of its parts have been used
+constexpr double kFindingBox = 50e-9;            ///< s a particle
+constexpr std::uint64_t kLibraries = 16u << 20;  ///< what the program grows by when all of its parts have been used
 
 /// What is known of the frames before they are read.
 struct Frames {
@@ -126,24 +127,34 @@ float spacing_or_one(const Frames& frames, const PictureOptions& picture) {
   return frames.bounds.empty() || !frames.largest.spacing ? 1.0f : *frames.largest.spacing;
 }
 
+/// Of the largest frame, without a surface.
+RunMemory memory_without_surface(const Frames& frames, const PictureOptions& picture, PictureFormat format) {
+  RunMemory memory;
+  memory.program = resident_bytes() + kLibraries;
+  memory.reading = frames.largest.reading_bytes();
+  memory.particles = frames.largest.particle_bytes();
+  if (picture.colour) memory.particles += 3 * sizeof(float) * frames.largest.particles;
+  memory.picture = picture_bytes(picture, format);
+  return memory;
+}
+
+std::uint64_t peak_with(const RunMemory& memory, std::uint64_t surface) {
+  return memory.program + std::max(memory.reading, memory.particles + surface + memory.picture);
+}
+
 /// Memory of the largest frame, in slabs if that keeps it to the limit.
 void estimate_memory(const Frames& frames, const PictureOptions& picture, PictureFormat format, RunEstimate& run) {
   RunMemory& memory = run.memory;
   const float spacing = spacing_or_one(frames, picture);
-  memory.program = resident_bytes() + kLibraries;
-  memory.reading = frames.largest.reading_bytes();
-  memory.particles = frames.largest.particle_bytes();
-  if (picture.colour) memory.particles += 3 * sizeof(float) * run.particles;
-  memory.picture = picture_bytes(picture, format);
+  memory = memory_without_surface(frames, picture, format);
   // A spacing that was given says nothing of the water's shape: it has the shape of a tank, of that spacing.
   const auto surface = [&](int slabs) { return surface_bytes(run.particles, frames.bounds, spacing, picture, slabs); };
-  const auto total = [&](std::uint64_t made) {
-    return memory.program + std::max(memory.reading, memory.particles + made + memory.picture);
-  };
+  const auto total = [&](std::uint64_t made) { return peak_with(memory, made); };
   memory.surface = surface(1);
   if (picture.memory_limit > 0 && total(memory.surface) > picture.memory_limit) {
-    const std::uint64_t rest = total(0);
-    const int slabs = picture.memory_limit > rest
+    // The surface is made when the file's bytes are gone.
+    const std::uint64_t rest = memory.program + memory.particles + memory.picture;
+    const int slabs = picture.memory_limit > std::max(rest, total(0))
                           ? slabs_for(picture.memory_limit - rest, run.particles, frames.bounds, spacing, picture)
                           : 0;
     if (slabs > 1) {
@@ -166,17 +177,16 @@ void estimate_times(const Frames& frames, const PictureOptions& picture, Picture
   const double made = time.a_particle * (kept + 0.12 * (n - kept));
   const double drawn =
       made * (run.slabs > 1 ? 1.3 : 1.0) + time.fixed + time.a_pixel * pixels + time.write_a_pixel * pixels;
-  run.survey_s = one_frame ? read + time.survey_a_particle * n : reads * (read + time.survey_a_particle * n);
+  // The spacing is found from half a million particles at most; the box from all.
+  const double looked_at = kFindingBox * n + time.survey_a_particle * std::min(n, 5e5);
+  run.survey_s = one_frame ? read + looked_at : reads * (read + kFindingBox * n) + looked_at;
   run.frame_s = drawn + (one_frame ? 0 : read);
   run.total_s = run.survey_s + pictures * run.frame_s;
 }
 
-}  // namespace
-
-RunEstimate estimate_run(const FrameSequence& sequence, const PictureOptions& picture, const SequenceOptions& options,
-                         std::uint64_t made_particles, bool with_times) {
+RunEstimate estimate_of(const Frames& frames, const FrameSequence& sequence, const PictureOptions& picture,
+                        const SequenceOptions& options, bool with_times) {
   RunEstimate run;
-  const Frames frames = frames_of(sequence, made_particles);
   const PictureFormat format = OutputTarget(options.output).format();
   const bool one_frame = sequence.frames.size() == 1;
   run.pictures = one_frame && options.turntable > 0 ? options.turntable : sequence.frames.size();
@@ -194,6 +204,13 @@ RunEstimate estimate_run(const FrameSequence& sequence, const PictureOptions& pi
   return run;
 }
 
+}  // namespace
+
+RunEstimate estimate_run(const FrameSequence& sequence, const PictureOptions& picture, const SequenceOptions& options,
+                         std::uint64_t made_particles, bool with_times) {
+  return estimate_of(frames_of(sequence, made_particles), sequence, picture, options, with_times);
+}
+
 void check_memory(const FrameSequence& sequence, const PictureOptions& picture, const SequenceOptions& options,
                   std::uint64_t made_particles) {
   const std::uint64_t limit = picture.memory_limit;
@@ -208,12 +225,19 @@ void check_memory(const FrameSequence& sequence, const PictureOptions& picture, 
                                                 {},
                                                 {},
                                                 "raise --memory-limit, or use fewer particles a frame"});
-  const RunEstimate run = estimate_run(sequence, picture, options, made_particles, false);
+  const Frames frames = frames_of(sequence, made_particles);
+  const RunEstimate run = estimate_of(frames, sequence, picture, options, false);
   if (run.memory.peak <= limit) return;
-  throw does_not_fit(picture, run.memory.peak, limit, {},
+  const PictureFormat format = OutputTarget(options.output).format();
+  throw does_not_fit(picture, limit, {},
                      run.memory.program + run.memory.reading > limit
                          ? fmt::format("a frame of {} particles cannot be read within the limit", run.particles)
-                         : "the run does not fit into the memory that may be used");
+                         : "the run does not fit into the memory that may be used",
+                     [&](const PictureOptions& other) {
+                       return peak_with(
+                           memory_without_surface(frames, other, format),
+                           least_surface_bytes(run.particles, frames.bounds, spacing_or_one(frames, other), other));
+                     });
 }
 
 }  // namespace meniscus

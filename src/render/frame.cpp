@@ -168,7 +168,8 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
     const StageTimer timer(times, "antialias");
     const std::vector<std::uint32_t> pixels =
         silhouette_pixels(view, frame.buffers, scene, surface_options.spacing, edges_of_solids ? &*behind : nullptr);
-    refine_pixels(*surface, view, scene, settings.material, optics, pixels, frame.buffers, frame.radiance);
+    refine_pixels(*surface, view, scene, settings.material, optics, pixels, frame.buffers, frame.radiance,
+                  water.in_slabs ? std::max(kPixelsAtOnce, frame.radiance.size() / 16) : kPixelsAtOnce);
   }
   if (settings.rain && settings.show == Show::water)
     draw_rain_over(settings, view, scene, frame.buffers, behind ? &*behind : nullptr, frame.radiance, times);

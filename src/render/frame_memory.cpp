@@ -15,11 +15,12 @@ namespace meniscus {
 namespace {
 
 // Bytes, as measured at 1280x720 and 2560x1440 (see docs/performance.md).
-constexpr double kShadingAPixel = 60;   ///< radiance, the picture, what is behind the water, the outlines' rays
+constexpr double kShadingAPixel = 30;   ///< radiance, the picture, what is behind the water, the outlines' rays
 constexpr double kTracingAPixel = 40;   ///< paths through the water
+constexpr double kOutlinesAPixel = 40;  ///< more, where the rays of many outlines are cast at once
 constexpr double kEncoderAPixel = 110;  ///< x264 looks some forty pictures ahead
 constexpr std::uint64_t kCaustics = 120u << 20;
-constexpr std::uint64_t kShadow = 24u << 20;
+constexpr std::uint64_t kShadow = 8u << 20;
 constexpr std::uint64_t kRain = 160u << 20;
 constexpr double kMeshFactor = 4;  ///< bytes of a mesh with its tree over those of its file
 
@@ -70,6 +71,8 @@ std::uint64_t picture_bytes(const PictureOptions& picture, PictureFormat format)
   double sum = kShadingAPixel * rays;
   if (picture.show == Show::water && picture.optics.refraction == RefractionMethod::ray_traced)
     sum += kTracingAPixel * rays;
+  if (picture.memory_limit > 0 && picture.antialias == Antialias::edges && can_be_cut(picture))
+    sum += kOutlinesAPixel * pixels;
   if (format == PictureFormat::mp4) sum += kEncoderAPixel * pixels;
   std::uint64_t total = bytes(sum);
   if (picture.show == Show::water && picture.shadow) total += picture.caustics && !picture.colour ? kCaustics : kShadow;
@@ -114,6 +117,15 @@ int slabs_for(std::uint64_t limit, std::uint64_t particles, const Bounds& bounds
                       options_of(spacing, picture), ray_pixels(picture), picture.colour.has_value());
 }
 
+std::uint64_t least_surface_bytes(std::uint64_t particles, const Bounds& bounds, float spacing,
+                                  const PictureOptions& picture) {
+  const std::uint64_t whole = surface_bytes(particles, bounds, spacing, picture, 1);
+  if (!can_be_cut(picture)) return whole;
+  return std::min(
+      whole, least_slab_bytes(particles, bounds.empty() ? tank_of(static_cast<double>(particles), spacing) : bounds,
+                              options_of(spacing, picture), ray_pixels(picture), picture.colour.has_value()));
+}
+
 std::uint64_t resident_bytes() {
   std::uint64_t size = 0, resident = 0;
   if (!(std::ifstream("/proc/self/statm") >> size >> resident)) return peak_rss_bytes();
@@ -125,32 +137,6 @@ std::string size_text(std::uint64_t size) {
   if (b >= 1e9) return fmt::format("{:.3g} GB", b / 1e9);
   if (b >= 1e6) return fmt::format("{:.3g} MB", b / 1e6);
   return b >= 1e3 ? fmt::format("{:.3g} kB", b / 1e3) : fmt::format("{} bytes", size);
-}
-
-Error does_not_fit(const PictureOptions& picture, std::uint64_t needed, std::uint64_t limit, const std::string& path,
-                   const std::string& problem) {
-  std::vector<std::string> help;
-  if (static_cast<std::uint64_t>(picture.width) * static_cast<std::uint64_t>(picture.height) > 640 * 360)
-    help.emplace_back("a smaller --size");
-  if (picture.antialias == Antialias::full) help.emplace_back("--antialias edges");
-  if (picture.method != SurfaceMethod::raycast && picture.method != SurfaceMethod::spheres && !picture.heights)
-    help.emplace_back("--surface raycast");
-  if (picture.method == SurfaceMethod::raycast && !can_be_cut(picture)) {
-    if (picture.rain)
-      help.emplace_back("no rain");
-    else
-      help.emplace_back("--refraction thickness with --no-caustics, so that the water can be drawn in parts");
-  }
-  help.emplace_back(fmt::format("--memory-limit {:.1f}GB", std::ceil(static_cast<double>(needed) * 1.1e-8) * 0.1));
-  std::string advice = "what would help: ";
-  for (std::size_t i = 0; i < help.size(); ++i) advice += (i == 0 ? "" : i + 1 < help.size() ? ", " : " or ") + help[i];
-  return Error(ErrorCode::limit_exceeded, {problem,
-                                           fmt::format("no more than the limit of {}", size_text(limit)),
-                                           fmt::format("about {} needed", size_text(needed)),
-                                           path,
-                                           {},
-                                           {},
-                                           advice});
 }
 
 }  // namespace meniscus

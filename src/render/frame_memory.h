@@ -23,15 +23,19 @@ std::uint64_t surface_bytes(std::uint64_t particles, const Bounds& bounds, float
 int slabs_for(std::uint64_t bytes, std::uint64_t particles, const Bounds& bounds, float spacing,
               const PictureOptions& picture);
 
+/// The least of the surface's bytes that will do: in slabs, if it can be cut.
+std::uint64_t least_surface_bytes(std::uint64_t particles, const Bounds& bounds, float spacing,
+                                  const PictureOptions& picture);
+
 /// The resident set of this process now, bytes.
 std::uint64_t resident_bytes();
 
 /// "1.5 GB"
 std::string size_text(std::uint64_t bytes);
 
-/// The refusal of a frame that does not fit, with what would help.
-/// @param needed  bytes at least
-Error does_not_fit(const PictureOptions& picture, std::uint64_t needed, std::uint64_t limit, const std::string& path,
-                   const std::string& problem);
+/// The refusal of a frame that does not fit, with what would help: only options with which it would fit.
+/// @param least  bytes that the frame would do with, drawn with other options
+Error does_not_fit(const PictureOptions& picture, std::uint64_t limit, const std::string& path,
+                   const std::string& problem, FunctionRef<std::uint64_t(const PictureOptions&)> least);
 
 }  // namespace meniscus

@@ -216,9 +216,12 @@ class SequenceRun {
     settings_->surface_memory = limit > held ? limit - held : 1;
     const float spacing = settings_->surface.spacing;
     if (slabs_for(settings_->surface_memory, particles.size(), particles.bounds(), spacing, picture_) > 0) return;
-    const std::uint64_t least =
-        held + surface_bytes(particles.size(), particles.bounds(), spacing, picture_, can_be_cut(picture_) ? 64 : 1);
-    throw does_not_fit(picture_, least, limit, report.path, "the frame does not fit into the memory that may be used");
+    const std::uint64_t resident = held - picture_bytes(picture_, target_.format());
+    throw does_not_fit(picture_, limit, report.path, "the frame does not fit into the memory that may be used",
+                       [&](const PictureOptions& other) {
+                         return resident + picture_bytes(other, target_.format()) +
+                                least_surface_bytes(particles.size(), particles.bounds(), spacing, other);
+                       });
   }
 
   void write_surfels(FrameReport& report, const Particles& particles) {

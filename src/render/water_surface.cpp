@@ -45,7 +45,7 @@ HeightField look_from_above(const Surface& surface, const FrameSettings& setting
 /// As a whole, or in slabs where that would take more memory than there is.
 std::unique_ptr<Surface> raycast_surface(const Particles& particles, const FrameSettings& settings,
                                          const RaycastOptions& raycast, std::span<const vec3> colours,
-                                         const ParticleSizes& sizes, StageTimes* times) {
+                                         const ParticleSizes& sizes, StageTimes* times, bool& in_slabs) {
   const bool whole = settings.surface_memory == 0 || particles.empty();
   const std::uint64_t pixels = static_cast<std::uint64_t>(settings.view.width) *
                                static_cast<std::uint64_t>(settings.view.height) *
@@ -58,6 +58,7 @@ std::unique_ptr<Surface> raycast_surface(const Particles& particles, const Frame
       !can_be_cut(settings.method, settings.optics.refraction,
                   settings.material.transparent && settings.show == Show::water, lit_through, settings.rain != nullptr))
     return make_raycast_surface(particles, raycast, colours, times, sizes);
+  in_slabs = true;
   return make_slab_surface(particles, raycast, colours, slabs == 0 ? kMostSlabs : slabs);
 }
 
@@ -85,7 +86,7 @@ WaterSurface water_surface(const Particles& particles, const FrameSettings& sett
       water.surface = make_sphere_surface(particles, 0.5f * raycast.spacing, colours);
       break;
     case SurfaceMethod::raycast:
-      water.surface = raycast_surface(particles, settings, raycast, colours, sizes.sizes(), times);
+      water.surface = raycast_surface(particles, settings, raycast, colours, sizes.sizes(), times, water.in_slabs);
       break;
     case SurfaceMethod::surfels:
       water.surface = make_surfel_surface(particles, surfel_options(settings, raycast), colours, times);

@@ -11,6 +11,7 @@ namespace meniscus {
 /// A surface, with what virtual eyes need to know of it.
 struct WaterSurface {
   std::unique_ptr<Surface> surface;
+  bool in_slabs = false;                       ///< drawn in parts: it does much work for each question
   std::optional<HeightField> seen_from_above;  ///< of surfaces that are none, for virtual eyes
   std::vector<WaterObject> objects;            ///< in Scene::solids(); only for virtual eyes
 

@@ -9,13 +9,12 @@ namespace {
 
 constexpr double kRoughness = 1.3;  ///< area of water with waves and splashes over that of a box
 // Bytes, as measured on tanks and crowns of 1 and 5 million particles: what is held lies within 0.7 and 1.2 of it.
-constexpr double kBytesKept = 24;        ///< a kept particle: position, index, mass, radius
-constexpr double kBytesBuilt = 30;       ///< while it is sorted
-constexpr double kBytesACell = 13;       ///< start, counts and kind
-constexpr double kBytesACellBuilt = 4;   ///< more, while particles are counted
-constexpr double kBytesSplatted = 20;    ///< a particle that is splatted
-constexpr double kSplattedWithin = 0.3;  ///< of the particles that are only counted
-constexpr double kBytesAPixel = 40;      ///< depth, normal, thickness, coverage, entry, exit, and what is filtered
+constexpr double kBytesKept = 24;       ///< a kept particle: position, index, mass, radius
+constexpr double kBytesBuilt = 30;      ///< while it is sorted
+constexpr double kBytesACell = 13;      ///< start, counts and kind
+constexpr double kBytesACellBuilt = 4;  ///< more, while particles are counted
+constexpr double kBytesSplatted = 2;    ///< a kept particle, while it is seen: lists of the nearest come and go
+constexpr double kBytesAPixel = 44;     ///< depth, normal, thickness, coverage, entry, exit, and what is filtered
 
 /// m^2: of water that lies in a box as in a tank: level, across the shortest side. Walls and floor are surface too.
 double area_of(double volume, const Bounds& bounds, double spacing) {
@@ -50,8 +49,7 @@ RaycastEstimate estimate_raycast(std::uint64_t count, const Bounds& bounds, cons
   const auto bytes = [](double b) { return static_cast<std::uint64_t>(std::max(b, 0.0)); };
   estimate.kept_bytes = bytes(kBytesKept * kept + kBytesACell * cells);
   estimate.build_bytes = bytes(kBytesBuilt * kept + (kBytesACell + kBytesACellBuilt) * cells);
-  const double splatted = options.want_thickness ? kept + kSplattedWithin * (n - kept) : kept;
-  estimate.view_bytes = bytes(kBytesAPixel * static_cast<double>(pixels) + kBytesSplatted * splatted);
+  estimate.view_bytes = bytes(kBytesAPixel * static_cast<double>(pixels) + kBytesSplatted * kept);
   estimate.particles = n;
   estimate.kept = kept;
   estimate.pixels = static_cast<double>(pixels);

@@ -33,6 +33,9 @@ bool may_be_cut(const vec3& extent, int axis) {
   return extent[axis] >= 0.5f * std::max({extent.x, extent.y, extent.z});
 }
 
+/// The next number of slabs that is tried.
+int more_slabs(int slabs) { return slabs + std::max(1, slabs / 4); }
+
 /// One slab: the half-open range of its own, m along the axis.
 struct Slab {
   int axis = 0;
@@ -278,9 +281,17 @@ std::uint64_t slab_bytes(int slabs, std::uint64_t count, const Bounds& bounds, c
 
 int slabs_within(std::uint64_t bytes, std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
                  std::uint64_t pixels, bool coloured) {
-  for (int slabs = 1; slabs <= kMostSlabs; slabs += std::max(1, slabs / 4))
+  for (int slabs = 1; slabs <= kMostSlabs; slabs = more_slabs(slabs))
     if (slab_bytes(slabs, count, bounds, options, pixels, coloured) <= bytes) return slabs;
   return 0;
+}
+
+std::uint64_t least_slab_bytes(std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
+                               std::uint64_t pixels, bool coloured) {
+  std::uint64_t least = slab_bytes(1, count, bounds, options, pixels, coloured);
+  for (int slabs = 2; slabs <= kMostSlabs; slabs = more_slabs(slabs))
+    least = std::min(least, slab_bytes(slabs, count, bounds, options, pixels, coloured));
+  return least;
 }
 
 }  // namespace meniscus

@@ -28,6 +28,10 @@ constexpr int kMostSlabs = 256;
 int slabs_within(std::uint64_t bytes, std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
                  std::uint64_t pixels, bool coloured);
 
+/// The least that slabs_within() would do with: of the whole, or of many slabs.
+std::uint64_t least_slab_bytes(std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
+                               std::uint64_t pixels, bool coloured);
+
 /// Bytes held at once for a surface in `slabs` slabs.
 std::uint64_t slab_bytes(int slabs, std::uint64_t count, const Bounds& bounds, const RaycastOptions& options,
                          std::uint64_t pixels, bool coloured);
