@@ -1,4 +1,4 @@
-/// Sixteen rays or points at once over one shared list of neighbours; compiled once for each instruction set.
+/// Sixteen points at once over one shared list of neighbours; compiled once for each instruction set.
 #pragma once
 
 #include <memory>
@@ -54,11 +54,6 @@ struct PacketPoints {
 };
 
 using PacketMask = std::uint32_t;  ///< bit l: lane l
-
-/// Marches the rays of `mask` from `entry` to `exit` (m along each) until the density crosses the iso-value:
-/// upwards, or downwards when `from_inside`. depth: m along the ray, +infinity where nothing is met.
-void march_packet(const RaycastField& field, const PacketRays& rays, PacketMask mask, const float* entry,
-                  const float* exit, bool from_inside, PacketList& list, float* depth);
 
 /// Corrects depths, m along the rays of `mask`, that are foretold to lie near where the density rises through the
 /// iso-value, by one or two steps of Newton's method.

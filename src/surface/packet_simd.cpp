@@ -8,8 +8,9 @@
 // after highway.h
 #include <hwy/contrib/math/math-inl.h>
 
-#include "surface/packet_march-inl.h"
+#include "surface/packet_lanes-inl.h"
 #include "surface/packet_normals-inl.h"
+#include "surface/packet_slopes-inl.h"
 #include "surface/packet_sums-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -47,11 +48,6 @@ void for_each_cluster(const RaycastField& field, const PacketPoints& points, Pac
 constexpr float kFarthestCorrection = 0.25f, kNearCorrection = 0.04f, kLeastSlope = 0.05f;
 
 }  // namespace
-
-void MarchPacket(const RaycastField& field, const PacketRays& rays, PacketMask mask, const float* entry,
-                 const float* exit, bool from_inside, PacketList& list, float* depth) {
-  March(field, rays, entry, exit, from_inside, list).run(mask, depth);
-}
 
 PacketMask CorrectPacket(const RaycastField& field, const PacketRays& rays, PacketMask mask, PacketList& list,
                          float* depth) {
@@ -141,16 +137,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meniscus {
 
-HWY_EXPORT(MarchPacket);
 HWY_EXPORT(CorrectPacket);
 HWY_EXPORT(NormalsPacket);
 HWY_EXPORT(DensityPacket);
 HWY_EXPORT(ColoursPacket);
-
-void march_packet(const RaycastField& field, const PacketRays& rays, PacketMask mask, const float* entry,
-                  const float* exit, bool from_inside, PacketList& list, float* depth) {
-  HWY_DYNAMIC_DISPATCH(MarchPacket)(field, rays, mask, entry, exit, from_inside, list, depth);
-}
 
 PacketMask correct_packet(const RaycastField& field, const PacketRays& rays, PacketMask mask, PacketList& list,
                           float* depth) {

@@ -30,7 +30,7 @@ HWY_INLINE Vec reciprocal_root(Vec v) {
 }
 
 /// Fills the list with the particles nearer than `radius` to the box, in their sorted order.
-HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, float radius, bool colours,
+HWY_MAYBE_UNUSED HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, float radius, bool colours,
                               PacketList& list) {
   if (HWY_UNLIKELY(field.has_sizes())) return gather_sizes(field, low, high, radius, colours, list);
   const Tag d;
@@ -98,7 +98,7 @@ struct WyvillShape {
 };
 
 /// Sets rho to one at those of a vector of points that lie where particles in the midst of the water are left out.
-HWY_NOINLINE void fill_where_full(const BandGrid& grid, Vec px, Vec py, Vec pz, float* rho) {
+HWY_MAYBE_UNUSED HWY_NOINLINE void fill_where_full(const BandGrid& grid, Vec px, Vec py, Vec pz, float* rho) {
   const Tag d;
   alignas(64) float x[kPacket], y[kPacket], z[kPacket];
   hn::Store(px, d, x);
@@ -161,7 +161,7 @@ HWY_MAYBE_UNUSED HWY_NOINLINE void density_along_rays(const RaycastField& field,
       rho);
 }
 
-HWY_NOINLINE void density_at_points(const RaycastField& field, const PacketList& list, const PacketPoints& points,
+HWY_MAYBE_UNUSED HWY_NOINLINE void density_at_points(const RaycastField& field, const PacketList& list, const PacketPoints& points,
                                     float* rho) {
   const Tag d;
   sum_density_by_kernel(

@@ -1,5 +1,6 @@
 #include "surface/picture_march.h"
 
+#include "surface/beam.h"
 #include "surface/packet_rays.h"
 #include "surface/picture_levels.h"
 
@@ -8,11 +9,13 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-thread_local PacketList thread_list;
+constexpr float kWidestBeam = 2.0f;  ///< spacings across, as far as pixels are not wider
 
-/// Up to sixteen pixels of a picture that are drawn together.
+thread_local BeamLists thread_lists;
+
+/// Pixels of a picture that are drawn together.
 struct Pixels {
-  int x[kPacket], y[kPacket];
+  int x[kBeam], y[kBeam];
   int count = 0;
 };
 
@@ -39,13 +42,13 @@ class PictureMarch {
   Image<float> marched(int stride) const {
     Image<float> depth = level_image(stride);
     for_each_tile(depth, [&](int x0, int y0, int x1, int y1) {
+      const int side = beam_side(x0, y0, x1, y1, stride);
       Pixels pixels;
-      for (int y = y0; y < y1; y += 4)
-        for (int x = x0; x < x1; x += 4) {
-          for (int l = 0; l < kPacket; ++l) {
-            const int i = x + l % 4, j = y + l / 4;
-            if (i < x1 && j < y1 && may_hit(i * stride, j * stride)) add(pixels, i, j);
-          }
+      for (int y = y0; y < y1; y += side)
+        for (int x = x0; x < x1; x += side) {
+          for (int j = y; j < std::min(y + side, y1); ++j)
+            for (int i = x; i < std::min(x + side, x1); ++i)
+              if (may_hit(i * stride, j * stride)) add(pixels, i, j);
           march(pixels, stride, depth);
         }
     });
@@ -59,6 +62,7 @@ class PictureMarch {
     for_each_tile(depth, [&](int x0, int y0, int x1, int y1) {
       TilePixels open, unknown;
       foretelling.tile(x0, y0, x1, y1, depth, open, unknown);
+      const int side = beam_side(x0, y0, x1, y1, stride), most = side * side;
       Pixels pixels;
       for (int i = 0; i < open.count; ++i) {
         add(pixels, open.x[i], open.y[i]);
@@ -66,7 +70,7 @@ class PictureMarch {
       }
       for (int i = 0; i < unknown.count; ++i) {
         add(pixels, unknown.x[i], unknown.y[i]);
-        if (pixels.count == kPacket || i + 1 == unknown.count) march(pixels, stride, depth);
+        if (pixels.count == most || i + 1 == unknown.count) march(pixels, stride, depth);
       }
     });
     return depth;
@@ -94,43 +98,56 @@ class PictureMarch {
     pixels.y[pixels.count++] = y;
   }
 
-  /// The rays of pixels of a level, and the lanes that are theirs; the others repeat the first.
-  PacketMask set_rays(const Pixels& pixels, int stride, PacketRays& rays) const {
+  /// Pixels along a beam in this part of a level: 8, 4 or 2.
+  int beam_side(int x0, int y0, int x1, int y1, int stride) const {
+    float first = kInfinity;
+    for (int y = y0; y < y1; y += 3)
+      for (int x = x0; x < x1; x += 3)
+        if (may_hit(x * stride, y * stride)) first = std::min(first, buffers_.entry(x * stride, y * stride));
+    if (!(first < kInfinity)) return 4;
+    const float pixel = static_cast<float>(stride) * view_.pixel_size(first);
+    const float most = kWidestBeam * field_.options.spacing;
+    return 8.0f * pixel <= most ? 8 : 2.0f * pixel <= most ? 4 : 2;
+  }
+
+  /// The rays of pixels of a level; those beyond the last repeat the first.
+  void set_rays(const Pixels& pixels, int stride, Beam& beam) const {
+    beam.count = pixels.count;
     alignas(64) float x[kPacket], y[kPacket];
-    for (int l = 0; l < kPacket; ++l) {
-      const int i = l < pixels.count ? l : 0;
-      x[l] = static_cast<float>(pixels.x[i] * stride) + 0.5f;
-      y[l] = static_cast<float>(pixels.y[i] * stride) + 0.5f;
+    for (int first = 0; first < pixels.count; first += kPacket) {
+      for (int l = 0; l < kPacket; ++l) {
+        const int i = first + l < pixels.count ? first + l : 0;
+        x[l] = static_cast<float>(pixels.x[i] * stride) + 0.5f;
+        y[l] = static_cast<float>(pixels.y[i] * stride) + 0.5f;
+      }
+      rays_through(view_, x, y, beam.rays[first / kPacket]);
     }
-    rays_through(view_, x, y, rays);
-    return (1u << pixels.count) - 1u;
   }
 
   void march(Pixels& pixels, int stride, Image<float>& depth) const {
     if (pixels.count == 0) return;
-    PacketRays rays;
-    alignas(64) float entry[kPacket], exit[kPacket], found[kPacket];
-    const PacketMask mask = set_rays(pixels, stride, rays);
-    for (int l = 0; l < kPacket; ++l) {
-      const int i = l < pixels.count ? l : 0;
-      entry[l] = buffers_.entry(pixels.x[i] * stride, pixels.y[i] * stride);
-      exit[l] = buffers_.exit(pixels.x[i] * stride, pixels.y[i] * stride);
+    Beam beam;
+    set_rays(pixels, stride, beam);
+    for (int i = 0; i < pixels.count; ++i) {
+      beam.entry[i] = buffers_.entry(pixels.x[i] * stride, pixels.y[i] * stride);
+      beam.exit[i] = buffers_.exit(pixels.x[i] * stride, pixels.y[i] * stride);
     }
-    march_packet(field_, rays, mask, entry, exit, buffers_.eye_in_water, thread_list, found);
-    for (int l = 0; l < pixels.count; ++l) depth(pixels.x[l], pixels.y[l]) = found[l];
+    march_beam(field_, buffers_.eye_in_water, thread_lists, beam);
+    for (int i = 0; i < pixels.count; ++i) depth(pixels.x[i], pixels.y[i]) = beam.depth[i];
     pixels.count = 0;
   }
 
   /// Depths that are foretold; those that turn out not to be there are `unknown`.
   void correct(Pixels& pixels, int stride, Image<float>& depth, TilePixels& unknown) const {
-    PacketRays rays;
+    Beam beam;
+    set_rays(pixels, stride, beam);
     alignas(64) float found[kPacket];
-    const PacketMask mask = set_rays(pixels, stride, rays);
     for (int l = 0; l < kPacket; ++l) {
       const int i = l < pixels.count ? l : 0;
       found[l] = depth(pixels.x[i], pixels.y[i]);
     }
-    const PacketMask good = correct_packet(field_, rays, mask, thread_list, found);
+    const PacketMask mask = (1u << pixels.count) - 1u;
+    const PacketMask good = correct_packet(field_, beam.rays[0], mask, thread_lists.near, found);
     for (int l = 0; l < pixels.count; ++l)
       if ((good >> l) & 1u)
         depth(pixels.x[l], pixels.y[l]) = found[l];
@@ -144,23 +161,22 @@ class PictureMarch {
   SurfaceBuffers& buffers_;
 };
 
-/// Points need not lie near each other: sixteen after another are a packet.
+/// Points that come one after another are marched together as far as they lie near each other.
 void march_points(const RaycastField& field, const View& view, std::span<const vec2> points, SurfaceBuffers& buffers) {
-  parallel_for((points.size() + kPacket - 1) / kPacket, 64, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kAtOnce = kPacket;
+  parallel_for((points.size() + kAtOnce - 1) / kAtOnce, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t at = begin; at < end; ++at) {
-      PacketRays rays;
-      PacketMask mask = point_rays(view, points, at * kPacket, rays);
-      alignas(64) float entry[kPacket], exit[kPacket], depth[kPacket];
-      for (std::size_t l = 0; l < kPacket; ++l) {
-        const std::size_t i = std::min(at * kPacket + l, points.size() - 1);
-        entry[l] = buffers.entry[i];
-        exit[l] = buffers.exit[i];
-      }
-      march_packet(field, rays, mask, entry, exit, buffers.eye_in_water, thread_list, depth);
-      for (std::size_t l = 0; l < kPacket && at * kPacket + l < points.size(); ++l) {
-        if (!(depth[l] < kInfinity)) continue;
-        buffers.depth[at * kPacket + l] = depth[l];
-        buffers.coverage[at * kPacket + l] = 1.0f;
+      Beam beam;
+      const std::size_t first = at * kAtOnce;
+      point_rays(view, points, first, beam.rays[0]);
+      beam.count = static_cast<int>(std::min(kAtOnce, points.size() - first));
+      std::copy_n(&buffers.entry[first], beam.count, beam.entry);
+      std::copy_n(&buffers.exit[first], beam.count, beam.exit);
+      march_beam(field, buffers.eye_in_water, thread_lists, beam);
+      for (int i = 0; i < beam.count; ++i) {
+        if (!(beam.depth[i] < kInfinity)) continue;
+        buffers.depth[first + static_cast<std::size_t>(i)] = beam.depth[i];
+        buffers.coverage[first + static_cast<std::size_t>(i)] = 1.0f;
       }
     }
   });
