@@ -1,4 +1,5 @@
-/// Sixteen points at once over one shared list of neighbours; compiled once for each instruction set.
+/// Sixteen points, or places along sixteen rays, at once over one shared list of neighbours; compiled once for each
+/// instruction set.
 #pragma once
 
 #include <memory>
