@@ -1,24 +1,14 @@
 #include "surface/masses.h"
 
-#include <cmath>
-
 namespace meniscus {
 namespace {
 
-/// Of the particles that a cell amidst the water holds, the shares between which a cell is about full.
-constexpr float kFull = 0.85f, kPacked = 1.3f;
-/// Reach of first sums in full cells, spacings: beyond it a particle adds less than 0.01.
-constexpr float kNear = 1.5f;
 /// Particles that are looked at together lie in so many cells along each axis.
 constexpr int kTogether = 2;
 
 class MassBlock {
  public:
-  MassBlock(RaycastField& field, const MassRule& rule) : field_(field), rule_(rule) {
-    const float across = field.grid.cell_size() / field.options.spacing, inside = across * across * across;
-    full_ = static_cast<std::uint32_t>(std::ceil(kFull * inside));
-    packed_ = static_cast<std::uint32_t>(kPacked * inside);
-  }
+  MassBlock(RaycastField& field, const MassRule& rule) : field_(field), rule_(rule) {}
 
   void find(int block) {
     const BandGrid& grid = field_.grid;
@@ -34,25 +24,14 @@ class MassBlock {
   void find_cells(int block, int x, int y, int z) {
     const BandGrid& grid = field_.grid;
     const BandGrid::Kind* kinds = grid.kinds(block);
-    const std::uint64_t* beside = grid.beside(block);
     for (int dz = 0; dz < kTogether; ++dz)
       for (int dy = 0; dy < kTogether; ++dy)
         for (int dx = 0; dx < kTogether; ++dx) {
           const int cell = ((z + dz) * BandGrid::kSide + y + dy) * BandGrid::kSide + x + dx;
           if (kinds[cell] != BandGrid::open) continue;
           const BandGrid::Run run = grid.run(block, cell);
-          const std::size_t count = run.end - run.begin;
-          const bool likely_full = count >= full_ && count <= packed_ && (beside[cell / 64] >> cell % 64 & 1) != 0;
-          for (std::size_t i = run.begin; i < run.end; ++i) {
-            if (!likely_full) {
-              add(i);
-              continue;
-            }
-            if (near_.count == MassPoints::kMost) flush_near();
-            append(i, near_);
-          }
+          for (std::size_t i = run.begin; i < run.end; ++i) add(i);
         }
-    flush_near();
     flush();
   }
 
@@ -77,17 +56,6 @@ class MassBlock {
     unit_densities(field_, points, reach, list_, density_);
   }
 
-  /// What the nearest particles alone make full, and not packed, has a mass of one and the usual radius.
-  void flush_near() {
-    if (near_.count == 0) return;
-    sum(near_, std::min(kNear * field_.options.spacing, field_.options.smoothing_length));
-    bool full[MassPoints::kMost];
-    for (std::size_t i = 0; i < near_.count; ++i) full[i] = density_[i] >= rule_.full_density && density_[i] <= 1.0f;
-    for (std::size_t i = 0; i < near_.count; ++i)
-      if (!full[i]) add(near_.index[i]);
-    near_.count = 0;
-  }
-
   void flush() {
     if (points_.count == 0) return;
     sum(points_, field_.options.smoothing_length);
@@ -100,8 +68,7 @@ class MassBlock {
 
   RaycastField& field_;
   const MassRule& rule_;
-  std::size_t full_ = 0, packed_ = 0;
-  MassPoints near_, points_;
+  MassPoints points_;
   PacketList list_;
   alignas(64) float density_[MassPoints::kMost];
 };

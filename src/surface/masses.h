@@ -7,8 +7,7 @@
 namespace meniscus {
 
 /// Sets field.mass and field.entry_radius by the rule of raycast_field.h, from the density of unit masses at every
-/// particle that is not in a hidden cell. Where a cell touches a hidden one and holds about as many particles as a cell
-/// amidst the water, a sum over the nearest particles comes first, which seldom leaves anything to ask.
+/// particle that is not in a hidden cell.
 void find_masses(RaycastField& field);
 
 /// Points near each other, at which densities are summed over one list of particles.
