@@ -58,7 +58,7 @@ Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View&
   // Three samples in two spacings in the middle of the water.
   const float middle = std::max(glm::dot(grid.bounds().centre() - view.eye, view.forward), spacing);
   const float spacing_px = spacing / view.pixel_size(middle);
-  const int stride = grid.blocks() == 0 ? 1 : std::clamp(static_cast<int>(spacing_px / 1.4f + 0.5f), 1, 8);
+  const int stride = grid.blocks() == 0 ? 1 : std::clamp(static_cast<int>(spacing_px / 1.3f + 0.5f), 1, 8);
   const float spacing_samples = spacing_px / static_cast<float>(stride);
   const Image<float> sums = summed_water(grid, spacing, SplatCamera(view, stride));
   // Variance along an axis: that of a sphere's water (radius^2 / 5) less that of the spreading over four samples.
