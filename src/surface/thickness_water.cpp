@@ -153,6 +153,7 @@ class Water {
     const float spacing_samples = !(near > 0.0f)        ? 2.0f * kWidestPoint
                                   : camera_.perspective ? spacing_ / (near * camera_.du)
                                                         : spacing_ / camera_.du;
+    const bool all_spheres = grid_.size() <= kAllSpheres;
     const BandBits& amidst = amidst_[static_cast<std::size_t>(block)];
     std::uint64_t all = ~std::uint64_t{0}, any = 0;
     for (const std::uint64_t word : amidst) {
@@ -164,8 +165,9 @@ class Water {
       return;
     }
     if (any != 0)
-      add_cells(block, amidst, 0.5f * spacing_samples * grid_.cell_size() > kWidestPoint * spacing_, canvas);
-    add_particles(block, amidst, spacing_samples > kWidestPoint || grid_.size() <= kAllSpheres, canvas);
+      add_cells(block, amidst, all_spheres || 0.5f * spacing_samples * grid_.cell_size() > kWidestPoint * spacing_,
+                canvas);
+    add_particles(block, amidst, all_spheres || spacing_samples > kWidestPoint, canvas);
   }
 
  private:

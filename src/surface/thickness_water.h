@@ -9,8 +9,9 @@ namespace meniscus {
 /// Radius of the spheres that thickness is summed from, spacings (thickness_radius() of raycast_field.h).
 constexpr float kThicknessRadius = 1.25f;
 
-/// Of up to so many particles each is a sphere, and there are no points.
-constexpr std::size_t kAllSpheres = 20000;
+/// Of up to so many particles each is a sphere, and there are no points: spread as they are these reach a little
+/// farther, which shows where opaque water casts a shadow.
+constexpr std::size_t kAllSpheres = 50000;
 
 /// Water along the rays of the camera's samples, m; points are not spread yet.
 /// @param spacing  m
