@@ -16,16 +16,6 @@ namespace meniscus {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// 1 / sqrt(v) as exactly as sums along a ray need it. AVX-512 guesses to 14 bits, which moves a crossing by less than
-/// 1e-3 spacings; the others take a Newton step.
-HWY_INLINE Vec quick_reciprocal_root(Vec v) {
-#if HWY_TARGET <= HWY_AVX3
-  return hn::ApproximateReciprocalSqrt(v);
-#else
-  return reciprocal_root(v);
-#endif
-}
-
 /// Kernels over W(0) for a march. bracket(s): from s = max(1 - r^2 / h^2, 0), times m, to find between which samples a
 /// ray crosses. exact(r2, along, ...): adds m W and m dW/dt, where dr^2/dt = 2 `along`.
 struct CubicSplineSamples {
@@ -40,7 +30,7 @@ struct CubicSplineSamples {
   static HWY_INLINE void exact(Vec r2, Vec along, Vec per_h, Vec mass, Vec& sum, Vec& slope) {
     const Tag d;
     const Vec zero = hn::Zero(d), near = hn::Max(r2, hn::Set(d, 1e-30f));
-    const Vec per_r = quick_reciprocal_root(near);
+    const Vec per_r = reciprocal_root(near);
     const Vec q = hn::Mul(hn::Mul(near, per_r), per_h);
     const Vec outer = hn::Max(hn::Sub(hn::Set(d, 1.0f), q), zero);
     const Vec inner = hn::Max(hn::Sub(hn::Set(d, 1.0f), hn::Add(q, q)), zero);  // 8 (1/2 - q)^3 = (1 - 2 q)^3
