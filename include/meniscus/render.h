@@ -501,7 +501,7 @@ struct RunEstimate {
 };
 
 /// Estimates a run from the frames' headers and file sizes; nothing is written. Memory is within a factor of 1.5, time
-/// within 2: it is measured with a small frame of water that is drawn in the same way, in some 50 ms.
+/// within 2: it is measured with two small frames of water that are drawn in the same way, in a second or two.
 /// @param made_particles  in a frame, of sequences that are made up without being foreseen
 /// @param with_times      false: times are left zero, and nothing is drawn
 /// @throws Error  not_found, malformed_file ...: no frame has a header that can be understood

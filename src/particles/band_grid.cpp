@@ -302,7 +302,7 @@ class BandGrid::Build {
     // No values yet: the threads that write them meet the memory first.
     for (auto axis : {&BandGrid::x_, &BandGrid::y_, &BandGrid::z_}) {
       g.*axis = paged_array<float>(padded);
-      std::fill_n(&(g.*axis)[g.kept_], kPadding, kFarAway);
+      std::fill_n((g.*axis).get() + g.kept_, kPadding, kFarAway);
     }
     g.index_ = paged_array<std::uint32_t>(padded);
     float *x = g.x_.get(), *y = g.y_.get(), *z = g.z_.get();

@@ -50,9 +50,9 @@ class BandGrid {
   const float* x() const { return x_.get(); }
   const float* y() const { return y_.get(); }
   const float* z() const { return z_.get(); }
-  vec3 position(std::size_t sorted) const { return {x_[sorted], y_[sorted], z_[sorted]}; }
+  vec3 position(std::size_t sorted) const { return {x()[sorted], y()[sorted], z()[sorted]}; }
   /// Index in the given order of the particle at a place of the sorted order.
-  std::uint32_t given_index(std::size_t sorted) const { return index_[sorted]; }
+  std::uint32_t given_index(std::size_t sorted) const { return index_.get()[sorted]; }
 
   struct Run {
     std::size_t begin, end;
