@@ -16,10 +16,10 @@ namespace {
 
 // Bytes, as measured at 1280x720 and 2560x1440 (see docs/performance.md).
 constexpr double kShadingAPixel = 30;   ///< radiance, the picture, what is behind the water, the outlines' rays
-constexpr double kTracingAPixel = 40;   ///< paths through the water
+constexpr double kTracingAPixel = 20;   ///< paths through the water
 constexpr double kOutlinesAPixel = 40;  ///< more, where the rays of many outlines are cast at once
 constexpr double kEncoderAPixel = 110;  ///< x264 looks some forty pictures ahead
-constexpr std::uint64_t kCaustics = 120u << 20;
+constexpr std::uint64_t kCaustics = 64u << 20;
 constexpr std::uint64_t kShadow = 8u << 20;
 constexpr std::uint64_t kRain = 160u << 20;
 constexpr double kMeshFactor = 4;  ///< bytes of a mesh with its tree over those of its file

@@ -10,7 +10,8 @@
 namespace meniscus {
 namespace {
 
-constexpr int kLeastEdge = 120;  ///< px; nobody wants a smaller picture
+constexpr int kLeastEdge = 120;                     ///< px; nobody wants a smaller picture
+constexpr std::uint64_t kMargin = 2 * 1000 * 1000;  ///< bytes; the program's own size differs from run to run
 
 /// Other options, and how to ask for them.
 struct Change {
@@ -57,11 +58,10 @@ std::optional<Change> smaller(Change change, FunctionRef<bool(const PictureOptio
 
 Error does_not_fit(const PictureOptions& picture, std::uint64_t limit, const std::string& path,
                    const std::string& problem, FunctionRef<std::uint64_t(const PictureOptions&)> least) {
-  const auto fits = [&](const PictureOptions& other) { return least(other) <= limit; };
+  const auto fits = [&](const PictureOptions& other) { return least(other) + kMargin <= limit; };
   std::vector<std::string> help;
   const auto name_if_it_fits = [&](const Change& change) {
-    if (!change.said.empty() && fits(change.picture))
-      help.push_back(fmt::format("{}", fmt::join(change.said, " ")));
+    if (!change.said.empty() && fits(change.picture)) help.push_back(fmt::format("{}", fmt::join(change.said, " ")));
   };
   Change other{picture, {}};
   if (picture.antialias == Antialias::full) {
