@@ -17,6 +17,7 @@
 #include "surface/sized_masses.h"
 #include "surface/sized_thickness.h"
 #include "surface/splat.h"
+#include "surface/spray.h"
 #include "surface/thickness.h"
 
 namespace meniscus {
@@ -45,6 +46,7 @@ class RaycastSurface final : public Surface {
       find_sized_masses(field_);
     else if (field_.options.keep_thin)
       find_masses(field_);
+    if (!field_.has_sizes()) shrink_entries_of_spray(field_);
     for_each_level(field_, [&](RaycastField& level) {
       forget_amidst(level);
       hidden_cells_.add(hidden_cell_spheres(level));
