@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "surface/normal_filter.h"
+#include "surface/particle_thickness.h"
 
 namespace meniscus {
 namespace {
@@ -91,14 +92,10 @@ class SlabSurface final : public Surface {
     return fine;
   }
 
+  /// Of all particles one by one, as no slab tells which of them lie amidst others.
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
-    Image<float> sum =
-        points.empty() ? Image<float>(view.width, view.height) : Image<float>(static_cast<int>(points.size()), 1);
-    for (const Slab& slab : slabs_for(view)) {
-      const Image<float> part = part_of(slab, 0, times, true)->thickness(view, points, times);
-      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
-    }
-    return sum;
+    const StageTimer timer(times, "thickness");
+    return particle_thickness(particles_, options_.spacing, view, points);
   }
 
   float spacing() const override { return options_.spacing; }
@@ -147,26 +144,24 @@ class SlabSurface final : public Surface {
   }
 
   /// The surface of the particles of a slab and of those up to `margin` m beside it.
-  std::unique_ptr<Surface> part_of(const Slab& slab, float margin, StageTimes* times,
-                                   bool only_thickness = false) const {
+  std::unique_ptr<Surface> part_of(const Slab& slab, float margin, StageTimes* times) const {
     const std::vector<float>& values = values_of(particles_, slab.axis);
     const auto is_in = [&](float value) { return value >= slab.low - margin && value < slab.high + margin; };
     const auto count = static_cast<std::size_t>(std::count_if(values.begin(), values.end(), is_in));
     Particles part;
     std::vector<vec3> colours;
     for (std::vector<float>* list : {&part.x, &part.y, &part.z}) list->reserve(count);
-    if (!colours_.empty() && !only_thickness) colours.reserve(count);
+    if (!colours_.empty()) colours.reserve(count);
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!is_in(values[i])) continue;
       part.x.push_back(particles_.x[i]);
       part.y.push_back(particles_.y[i]);
       part.z.push_back(particles_.z[i]);
-      if (!colours_.empty() && !only_thickness) colours.push_back(colours_[i]);
+      if (!colours_.empty()) colours.push_back(colours_[i]);
     }
     RaycastOptions options = options_;
     options.filter_radius = 0;  // the filter reaches over borders
-    options.want_thickness = only_thickness;
-    if (only_thickness) options.want_normals = options.keep_thin = false;
+    options.want_thickness = false;
     return make_raycast_surface(part, options, colours, times);
   }
 
