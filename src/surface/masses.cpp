@@ -35,30 +35,23 @@ class MassBlock {
     flush();
   }
 
-  void append(std::size_t i, MassPoints& points) const {
-    points.index[points.count] = static_cast<std::uint32_t>(i);
-    points.x[points.count] = field_.grid.x()[i];
-    points.y[points.count] = field_.grid.y()[i];
-    points.z[points.count] = field_.grid.z()[i];
-    ++points.count;
-  }
   void add(std::size_t i) {
     if (points_.count == MassPoints::kMost) flush();
-    append(i, points_);
-  }
-
-  void sum(MassPoints& points, float reach) {
-    for (std::size_t i = points.count; i % kPacket != 0; ++i) {  // lanes that are not looked at
-      points.x[i] = points.x[0];
-      points.y[i] = points.y[0];
-      points.z[i] = points.z[0];
-    }
-    unit_densities(field_, points, reach, list_, density_);
+    points_.index[points_.count] = static_cast<std::uint32_t>(i);
+    points_.x[points_.count] = field_.grid.x()[i];
+    points_.y[points_.count] = field_.grid.y()[i];
+    points_.z[points_.count] = field_.grid.z()[i];
+    ++points_.count;
   }
 
   void flush() {
     if (points_.count == 0) return;
-    sum(points_, field_.options.smoothing_length);
+    for (std::size_t i = points_.count; i % kPacket != 0; ++i) {  // lanes that are not looked at
+      points_.x[i] = points_.x[0];
+      points_.y[i] = points_.y[0];
+      points_.z[i] = points_.z[0];
+    }
+    unit_densities(field_, points_, list_, density_);
     for (std::size_t i = 0; i < points_.count; ++i) {
       field_.mass[points_.index[i]] = mass_at(rule_, density_[i]);
       field_.entry_radius[points_.index[i]] = entry_radius_at(field_.options, density_[i]);

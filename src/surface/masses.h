@@ -20,9 +20,8 @@ struct MassPoints {
   alignas(64) float z[kMost];
 };
 
-/// rho of unit masses, in relation to the density inside the water, at all of the points, of the particles nearer than
-/// `reach` to the points' box: all that contribute when that is the smoothing length, else a lower bound.
+/// rho of unit masses, in relation to the density inside the water, at all of the points.
 /// @param density  MassPoints::kMost values
-void unit_densities(const RaycastField& field, const MassPoints& points, float reach, PacketList& list, float* density);
+void unit_densities(const RaycastField& field, const MassPoints& points, PacketList& list, float* density);
 
 }  // namespace meniscus

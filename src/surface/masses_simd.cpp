@@ -59,14 +59,13 @@ HWY_NOINLINE void sum_units(const RaycastField& field, const MassPoints& points,
 
 }  // namespace
 
-void UnitDensities(const RaycastField& field, const MassPoints& points, float reach, PacketList& list,
-                   float* HWY_RESTRICT density) {
+void UnitDensities(const RaycastField& field, const MassPoints& points, PacketList& list, float* HWY_RESTRICT density) {
   vec3 low{points.x[0], points.y[0], points.z[0]}, high = low;
   for (std::size_t i = 1; i < points.count; ++i) {
     low = {std::min(low.x, points.x[i]), std::min(low.y, points.y[i]), std::min(low.z, points.z[i])};
     high = {std::max(high.x, points.x[i]), std::max(high.y, points.y[i]), std::max(high.z, points.z[i])};
   }
-  gather_positions(field.grid, low, high, reach, list);
+  gather_positions(field.grid, low, high, field.options.smoothing_length, list);
   switch (field.options.kernel) {
     case Kernel::cubic_spline:
       return sum_units<CubicSplineShape>(field, points, list, density);
@@ -86,9 +85,8 @@ namespace meniscus {
 
 HWY_EXPORT(UnitDensities);
 
-void unit_densities(const RaycastField& field, const MassPoints& points, float reach, PacketList& list,
-                    float* density) {
-  HWY_DYNAMIC_DISPATCH(UnitDensities)(field, points, reach, list, density);
+void unit_densities(const RaycastField& field, const MassPoints& points, PacketList& list, float* density) {
+  HWY_DYNAMIC_DISPATCH(UnitDensities)(field, points, list, density);
 }
 
 }  // namespace meniscus

@@ -74,18 +74,8 @@ Bins sort_into_tiles(const SplatCamera& camera, const Spheres& spheres) {
       for_each_tile(bins, bins.rects[i], [&](std::size_t tile) { ++counters[block][tile]; });
     }
   });
-  bins.start.resize(tiles + 1);
-  std::uint32_t sum = 0;
-  for (std::size_t tile = 0; tile < tiles; ++tile) {
-    bins.start[tile] = sum;
-    for (auto& mine : counters) {
-      const std::uint32_t in_block = mine[tile];
-      mine[tile] = sum;
-      sum += in_block;
-    }
-  }
-  bins.start[tiles] = sum;
-  bins.spheres.resize(sum);
+  bins.start = tile_starts(counters, tiles);
+  bins.spheres.resize(bins.start[tiles]);
   parallel_for(blocks, 1, [&](std::size_t block, std::size_t) {
     for (std::size_t i = block * per_block; i < block_end(block); ++i)
       for_each_tile(bins, bins.rects[i],

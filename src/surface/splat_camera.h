@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
+#include <vector>
 
 #include "meniscus/base.h"
 
@@ -75,6 +77,23 @@ inline SampleRect samples_of(const SplatCamera& camera, const SplatBox& box) {
   const auto low = [&](float value) { return value / (value < 0.0f ? near : far); };
   const auto high = [&](float value) { return value / (value < 0.0f ? far : near); };
   return samples_within(camera, low(c.x - h.x), high(c.x + h.x), low(c.y - h.y), high(c.y + h.y));
+}
+
+/// Where the entries of each tile begin in a list sorted by tile, and one more.
+/// @param counters  entries by part of the work and tile; become the places where those of each part begin
+inline std::vector<std::uint32_t> tile_starts(std::vector<std::vector<std::uint32_t>>& counters, std::size_t tiles) {
+  std::vector<std::uint32_t> start(tiles + 1);
+  std::uint32_t sum = 0;
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    start[tile] = sum;
+    for (auto& mine : counters) {
+      const std::uint32_t in_part = mine[tile];
+      mine[tile] = sum;
+      sum += in_part;
+    }
+  }
+  start[tiles] = sum;
+  return start;
 }
 
 }  // namespace meniscus

@@ -87,18 +87,8 @@ Bins sort_into_tiles(const SplatCamera& camera, std::span<const ListedCluster> l
       for_each_tile(bins, bins.seen[i].rect, [&](std::size_t tile) { ++counters[piece][tile]; });
     }
   });
-  bins.start.resize(tiles + 1);
-  std::uint32_t sum = 0;
-  for (std::size_t tile = 0; tile < tiles; ++tile) {
-    bins.start[tile] = sum;
-    for (auto& mine : counters) {
-      const std::uint32_t in_piece = mine[tile];
-      mine[tile] = sum;
-      sum += in_piece;
-    }
-  }
-  bins.start[tiles] = sum;
-  bins.clusters.resize(sum);
+  bins.start = tile_starts(counters, tiles);
+  bins.clusters.resize(bins.start[tiles]);
   parallel_for(pieces, 1, [&](std::size_t piece, std::size_t) {
     for (std::size_t i = piece * per_piece; i < end_of(piece); ++i)
       for_each_tile(bins, bins.seen[i].rect,
