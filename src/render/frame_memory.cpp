@@ -104,8 +104,8 @@ std::uint64_t surface_bytes(std::uint64_t particles, const Bounds& known, float 
   }
   std::uint64_t sum =
       slab_bytes(slabs, particles, bounds, options_of(spacing, picture), pixels, picture.colour.has_value());
-  // Rays through the water need a table of cells, no finer than the particles justify.
-  if (follows_rays(picture) && slabs <= 1) sum += bytes(std::min(volume, 64 * n + (1 << 20)));
+  // Rays through the water need cells: a quarter of a byte each in a tank, some hundred for a drop far from others.
+  if (follows_rays(picture) && slabs <= 1) sum += bytes(std::min(0.25 * volume, 400 * n));
   return sum;
 }
 

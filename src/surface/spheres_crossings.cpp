@@ -129,14 +129,12 @@ MarchCells ball_cells(const BandGrid& grid, float radius) {
   RaycastOptions options;
   options.spacing = 2.0f * radius;
   options.smoothing_length = 2.0f * radius;
-  // Without masses no cell is inside.
   RaycastField field;
   field.options = options;
   field.least_spacing = options.spacing;
   field.grid = grid;
-  field.mass.assign(grid.size() + BandGrid::kPadding, 0.0f);
   field.entry_radius.assign(grid.size(), radius);
-  return MarchCells(field);
+  return MarchCells(field, MarchCells::Find::outside_only);
 }
 
 void ball_crossings(const BandGrid& grid, float radius, const MarchCells& cells, std::span<const Ray> rays,
