@@ -1,69 +1,143 @@
 #include "surface/masses.h"
 
+#include <algorithm>
+
 namespace meniscus {
 namespace {
 
-/// Particles that are looked at together lie in so many cells along each axis.
-constexpr int kTogether = 2;
+constexpr int kSide = BandGrid::kSide, kWide = kSide + 2;
 
+/// The open cells of one block after another, with what lies around them.
 class MassBlock {
  public:
   MassBlock(RaycastField& field, const MassRule& rule) : field_(field), rule_(rule) {}
 
   void find(int block) {
-    const BandGrid& grid = field_.grid;
-    const BandGrid::Run all = grid.run(block);
-    if (all.begin == all.end) return;
-    for (int z = 0; z < BandGrid::kSide; z += kTogether)
-      for (int y = 0; y < BandGrid::kSide; y += kTogether)
-        for (int x = 0; x < BandGrid::kSide; x += kTogether) find_cells(block, x, y, z);
+    if (!find_wanted_rows(block)) return;
+    find_blocks_around(block);
+    take_rows(block);
+    make_groups(block);
+    exceptions_.clear();
+    find_exceptions(field_, rows_, groups_, rule_.full_density, exceptions_);
+    for (const MassException& exception : exceptions_) {
+      field_.mass[exception.sorted] = mass_at(rule_, exception.density);
+      field_.entry_radius[exception.sorted] = entry_radius_at(field_.options, exception.density);
+    }
   }
 
  private:
-  /// The particles of a few cells.
-  void find_cells(int block, int x, int y, int z) {
+  /// Rows of cells, -1 .. 8 along y and z, that hold an open cell with particles or are beside such a row.
+  bool find_wanted_rows(int block) {
     const BandGrid& grid = field_.grid;
     const BandGrid::Kind* kinds = grid.kinds(block);
-    for (int dz = 0; dz < kTogether; ++dz)
-      for (int dy = 0; dy < kTogether; ++dy)
-        for (int dx = 0; dx < kTogether; ++dx) {
-          const int cell = ((z + dz) * BandGrid::kSide + y + dy) * BandGrid::kSide + x + dx;
-          if (kinds[cell] != BandGrid::open) continue;
-          const BandGrid::Run run = grid.run(block, cell);
-          for (std::size_t i = run.begin; i < run.end; ++i) add(i);
+    wanted_.fill(0);
+    bool any = false;
+    for (int z = 0; z < kSide; ++z) {
+      unsigned open = 0;
+      for (int y = 0; y < kSide; ++y) {
+        const int row = (z * kSide + y) * kSide;
+        const BandGrid::Run run = grid.run(block, row, row + kSide - 1);
+        if (run.begin < run.end && std::find(kinds + row, kinds + row + kSide, BandGrid::open) != kinds + row + kSide)
+          open |= 1u << y;
+      }
+      open_[at(z)] = open;
+      any = any || open != 0;
+      for (int dz = 0; dz < 3; ++dz) wanted_[at(z + dz)] |= open | open << 1 | open << 2;
+    }
+    return any;
+  }
+
+  void find_blocks_around(int block) {
+    const BandGrid& grid = field_.grid;
+    const glm::ivec3 here = grid.corner(block) / kSide;
+    std::size_t n = 0;
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) around_[n++] = grid.find(here.x + x, here.y + y, here.z + z);
+  }
+
+  void take_rows(int block) {
+    const BandGrid& grid = field_.grid;
+    const vec3 middle = grid.low(block) + 0.5f * static_cast<float>(kSide) * grid.cell_size();
+    rows_.count = 0;
+    const auto side = [](int cell) { return cell < 0 ? 0 : cell < kSide ? 1 : 2; };
+    for (int z = -1; z <= kSide; ++z)
+      for (int y = -1; y <= kSide; ++y) {
+        if ((wanted_[at(z + 1)] >> (y + 1) & 1u) == 0) continue;
+        std::uint32_t* start = starts(z, y);
+        const int row = ((z & (kSide - 1)) * kSide + (y & (kSide - 1))) * kSide;
+        const std::size_t left = at((side(z) * 3 + side(y)) * 3);
+        for (int x = -1; x <= kSide; ++x) {
+          start[x + 1] = static_cast<std::uint32_t>(rows_.count);
+          const int other = around_[left + at(side(x))];
+          if (other < 0) continue;
+          if (x == 0) {
+            const BandGrid::Run all = grid.run(other, row, row + kSide - 1);
+            for (int k = 1; k < kSide; ++k)
+              start[k + 1] = static_cast<std::uint32_t>(rows_.count + (grid.run(other, row + k).begin - all.begin));
+            if (all.begin < all.end) rows_.add(field_, middle, all);
+            x = kSide - 1;
+            continue;
+          }
+          const BandGrid::Run run = grid.run(other, row + (x & (kSide - 1)));
+          if (run.begin < run.end) rows_.add(field_, middle, run);
         }
-    flush();
+        start[kWide] = static_cast<std::uint32_t>(rows_.count);
+      }
   }
 
-  void add(std::size_t i) {
-    if (points_.count == MassPoints::kMost) flush();
-    points_.index[points_.count] = static_cast<std::uint32_t>(i);
-    points_.x[points_.count] = field_.grid.x()[i];
-    points_.y[points_.count] = field_.grid.y()[i];
-    points_.z[points_.count] = field_.grid.z()[i];
-    ++points_.count;
+  void make_groups(int block) {
+    const BandGrid::Kind* kinds = field_.grid.kinds(block);
+    groups_.clear();
+    for (int z = 0; z < kSide; ++z)
+      for (int y = 0; y < kSide; ++y) {
+        if ((open_[at(z)] >> y & 1u) == 0) continue;
+        const BandGrid::Kind* row = kinds + (z * kSide + y) * kSide;
+        for (int first = 0; first < kSide; ++first) {
+          if (row[first] != BandGrid::open) continue;
+          int end = first + 1;
+          while (end < kSide && row[end] == BandGrid::open) ++end;
+          add_groups(block, z, y, first, end);
+          first = end;
+        }
+      }
   }
 
-  void flush() {
-    if (points_.count == 0) return;
-    for (std::size_t i = points_.count; i % kPacket != 0; ++i) {  // lanes that are not looked at
-      points_.x[i] = points_.x[0];
-      points_.y[i] = points_.y[0];
-      points_.z[i] = points_.z[0];
+  /// Of the cells first .. end - 1 of a row.
+  void add_groups(int block, int z, int y, int first, int end) {
+    const std::uint32_t* here = starts(z, y) + 1;
+    const std::size_t sorted = field_.grid.run(block, (z * kSide + y) * kSide + first).begin;
+    for (std::uint32_t from = here[first]; from < here[end]; from += kPacket) {
+      MassGroup& group = groups_.emplace_back();
+      group.sorted = static_cast<std::uint32_t>(sorted) + (from - here[first]);
+      group.first = from;
+      group.count = std::min<std::uint32_t>(kPacket, here[end] - from);
+      int low = first, high = end - 1;
+      while (here[low + 1] <= from) ++low;
+      while (here[high] >= from + group.count) --high;
+      std::size_t n = 0;
+      for (int dz = -1; dz <= 1; ++dz)
+        for (int dy = -1; dy <= 1; ++dy) {
+          const std::uint32_t* near = starts(z + dz, y + dy) + 1;
+          group.begin[n] = near[low - 1];
+          group.end[n++] = near[high + 2];
+        }
     }
-    unit_densities(field_, points_, list_, density_);
-    for (std::size_t i = 0; i < points_.count; ++i) {
-      field_.mass[points_.index[i]] = mass_at(rule_, density_[i]);
-      field_.entry_radius[points_.index[i]] = entry_radius_at(field_.options, density_[i]);
-    }
-    points_.count = 0;
   }
+
+  static std::size_t at(int place) { return static_cast<std::size_t>(place); }
+  /// Where in rows_ the particles of the cells -1 .. 9 begin.
+  std::uint32_t* starts(int z, int y) { return &starts_[at(((z + 1) * kWide + y + 1) * (kWide + 1))]; }
 
   RaycastField& field_;
   const MassRule& rule_;
-  MassPoints points_;
-  PacketList list_;
-  alignas(64) float density_[MassPoints::kMost];
+  std::array<unsigned, kSide> open_;    ///< by z; bit y: the row holds an open cell
+  std::array<unsigned, kWide> wanted_;  ///< by z + 1; bit y + 1
+  std::array<int, 27> around_;          ///< blocks, or -1
+  std::array<std::uint32_t, std::size_t{kWide} * kWide*(kWide + 1)> starts_;
+  MassRows rows_;
+  std::vector<MassGroup> groups_;
+  std::vector<MassException> exceptions_;
 };
 
 }  // namespace

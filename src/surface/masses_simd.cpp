@@ -6,73 +6,116 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
-#include "surface/packet_sums-inl.h"
+#include "surface/packet_kernels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Positions of the particles nearer than `reach` to the box. Masses are not looked at: they are being written.
-HWY_NOINLINE void gather_positions(const BandGrid& grid, vec3 low, vec3 high, float reach, PacketList& list) {
+/// How far a density summed over CubicSplineSamples::bracket() is off, at most.
+constexpr float kDoubt = 0.01f, kSmallDoubt = 0.0015f;
+
+template <class Visit>
+HWY_INLINE void for_each_near(const MassGroup& group, Visit visit) {
+  for (std::size_t row = 0; row < MassGroup::kRows; ++row)
+    for (std::size_t j = group.begin[row]; j < group.end[row]; ++j) visit(j);
+}
+
+/// Over W(0), at the particles l .. of a group, by a kernel that is as good as exact.
+template <class Samples>
+HWY_INLINE Vec bracket_sum(const MassRows& rows, const MassGroup& group, std::size_t l) {
   const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  const Vec low_x = hn::Set(d, low.x), low_y = hn::Set(d, low.y), low_z = hn::Set(d, low.z);
-  const Vec high_x = hn::Set(d, high.x), high_y = hn::Set(d, high.y), high_z = hn::Set(d, high.z);
-  const Vec reach2 = hn::Set(d, reach * reach), zero = hn::Zero(d);
-  const auto outside = [&](Vec v, Vec from, Vec to) {
-    return hn::Max(hn::Max(hn::Sub(from, v), hn::Sub(v, to)), zero);
-  };
-  list.count = 0;
-  grid.for_each_run(low - reach, high + reach, [&](std::size_t begin, std::size_t end) {
-    list.reserve(list.count + (end - begin) + 2 * kPacket, false);
-    for (std::size_t i = begin; i < end; i += lanes) {
-      const Vec x = hn::LoadU(d, grid.x() + i), y = hn::LoadU(d, grid.y() + i), z = hn::LoadU(d, grid.z() + i);
-      const Vec off_x = outside(x, low_x, high_x), off_y = outside(y, low_y, high_y), off_z = outside(z, low_z, high_z);
-      const Vec off2 = hn::MulAdd(off_x, off_x, hn::MulAdd(off_y, off_y, hn::Mul(off_z, off_z)));
-      const auto near = hn::And(hn::Lt(off2, reach2), hn::FirstN(d, end - i));
-      hn::CompressStore(x, near, d, list.x.data() + list.count);
-      hn::CompressStore(y, near, d, list.y.data() + list.count);
-      list.count += hn::CompressStore(z, near, d, list.z.data() + list.count);
-    }
+  const Vec one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+  const float *x = rows.x.data(), *y = rows.y.data(), *z = rows.z.data(), *fall = rows.fall.data();
+  const std::size_t from = group.first + l;
+  const Vec px = hn::Mul(half, hn::LoadU(d, x + from)), py = hn::Mul(half, hn::LoadU(d, y + from)),
+            pz = hn::Mul(half, hn::LoadU(d, z + from)), most = hn::Add(one, hn::LoadU(d, fall + from));
+  // A particle's own part is known.
+  Vec sum = hn::Sub(one, Samples::bracket(one, one));
+  for_each_near(group, [&](std::size_t j) {
+    // 1 - |p - q|^2 / h^2 = 1 - |p|^2 / h^2 - |q|^2 / h^2 + 2 p . q / h^2
+    Vec s = hn::Add(most, hn::Set(d, fall[j]));
+    s = hn::MulAdd(px, hn::Set(d, x[j]), s);
+    s = hn::MulAdd(py, hn::Set(d, y[j]), s);
+    s = hn::Max(hn::MulAdd(pz, hn::Set(d, z[j]), s), zero);
+    sum = hn::Add(sum, Samples::bracket(s, one));
   });
+  return sum;
 }
 
 template <class Shape>
-HWY_NOINLINE void sum_units(const RaycastField& field, const MassPoints& points, const PacketList& list,
-                            float* HWY_RESTRICT density) {
+HWY_NOINLINE Vec exact_sum(const MassRows& rows, const MassGroup& group, std::size_t l) {
+  const Tag d;
+  const float *x = rows.x.data(), *y = rows.y.data(), *z = rows.z.data();
+  const std::size_t from = group.first + l;
+  const Vec px = hn::LoadU(d, x + from), py = hn::LoadU(d, y + from), pz = hn::LoadU(d, z + from);
+  const Vec per_h = hn::Set(d, 0.5f);  // lengths are in halves of h
+  Vec sum = hn::Zero(d);
+  for_each_near(group, [&](std::size_t j) {
+    const Vec dx = hn::Sub(px, hn::Set(d, x[j])), dy = hn::Sub(py, hn::Set(d, y[j])),
+              dz = hn::Sub(pz, hn::Set(d, z[j]));
+    sum = hn::Add(sum, Shape::at(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), per_h));
+  });
+  return sum;
+}
+
+template <class Samples, class Shape>
+HWY_NOINLINE void find_in_groups(const RaycastField& field, const MassRows& rows, std::span<const MassGroup> groups,
+                                 float thin, std::vector<MassException>& exceptions) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
-  const Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length), scale = hn::Set(d, field.scale);
-  const float *lx = list.x.data(), *ly = list.y.data(), *lz = list.z.data();
-  for (std::size_t l = 0; l < points.count; l += lanes) {
-    const Vec px = hn::Load(d, points.x + l), py = hn::Load(d, points.y + l), pz = hn::Load(d, points.z + l);
-    Vec sum = hn::Zero(d);
-    for (std::size_t j = 0; j < list.count; ++j) {
-      const Vec x = hn::Sub(px, hn::Set(d, lx[j])), y = hn::Sub(py, hn::Set(d, ly[j])),
-                z = hn::Sub(pz, hn::Set(d, lz[j]));
-      sum = hn::Add(sum, Shape::at(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))), per_h));
+  const Vec scale = hn::Set(d, field.scale), least = hn::Set(d, thin + kDoubt),
+            most = hn::Set(d, kPackedDensity - kSmallDoubt), more = hn::Set(d, kSmallDoubt);
+  alignas(64) float density[kPacket];
+  for (const MassGroup& group : groups)
+    for (std::size_t l = 0; l < group.count; l += lanes) {
+      Vec sum = hn::Mul(bracket_sum<Samples>(rows, group, l), scale);
+      const auto here = hn::FirstN(d, group.count - l);
+      if (HWY_LIKELY(hn::AllFalse(d, hn::And(here, hn::Or(hn::Lt(sum, least), hn::Gt(sum, most)))))) continue;
+      if (hn::AllFalse(d, hn::And(here, hn::Lt(sum, least))))
+        sum = hn::Add(sum, more);
+      else
+        sum = hn::Mul(exact_sum<Shape>(rows, group, l), scale);
+      hn::Store(sum, d, density);
+      for (std::size_t k = 0; k < std::min<std::size_t>(lanes, group.count - l); ++k)
+        if (density[k] < thin || density[k] > kPackedDensity)
+          exceptions.push_back({group.sorted + static_cast<std::uint32_t>(l + k), density[k]});
     }
-    hn::Store(hn::Mul(sum, scale), d, density + l);
-  }
 }
 
 }  // namespace
 
-void UnitDensities(const RaycastField& field, const MassPoints& points, PacketList& list, float* HWY_RESTRICT density) {
-  vec3 low{points.x[0], points.y[0], points.z[0]}, high = low;
-  for (std::size_t i = 1; i < points.count; ++i) {
-    low = {std::min(low.x, points.x[i]), std::min(low.y, points.y[i]), std::min(low.z, points.z[i])};
-    high = {std::max(high.x, points.x[i]), std::max(high.y, points.y[i]), std::max(high.z, points.z[i])};
+void AddToRows(const RaycastField& field, vec3 middle, BandGrid::Run sorted, MassRows& rows) {
+  const Tag d;
+  const std::size_t lanes = hn::Lanes(d);
+  const BandGrid& grid = field.grid;
+  const float to_halves = 2.0f / field.options.smoothing_length;
+  const Vec scale = hn::Set(d, to_halves), quarter = hn::Set(d, -0.25f);
+  const Vec mx = hn::Set(d, middle.x), my = hn::Set(d, middle.y), mz = hn::Set(d, middle.z);
+  float *to_x = rows.x.data() + rows.count, *to_y = rows.y.data() + rows.count, *to_z = rows.z.data() + rows.count,
+        *to_fall = rows.fall.data() + rows.count;
+  for (std::size_t i = sorted.begin, to = 0; i < sorted.end; i += lanes, to += lanes) {
+    const Vec x = hn::Mul(hn::Sub(hn::LoadU(d, grid.x() + i), mx), scale),
+              y = hn::Mul(hn::Sub(hn::LoadU(d, grid.y() + i), my), scale),
+              z = hn::Mul(hn::Sub(hn::LoadU(d, grid.z() + i), mz), scale);
+    hn::StoreU(x, d, to_x + to);
+    hn::StoreU(y, d, to_y + to);
+    hn::StoreU(z, d, to_z + to);
+    hn::StoreU(hn::Mul(quarter, hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)))), d, to_fall + to);
   }
-  gather_positions(field.grid, low, high, field.options.smoothing_length, list);
+  rows.count += sorted.end - sorted.begin;
+}
+
+void FindExceptions(const RaycastField& field, const MassRows& rows, std::span<const MassGroup> groups, float thin,
+                    std::vector<MassException>& exceptions) {
   switch (field.options.kernel) {
     case Kernel::cubic_spline:
-      return sum_units<CubicSplineShape>(field, points, list, density);
+      return find_in_groups<CubicSplineSamples, CubicSplineShape>(field, rows, groups, thin, exceptions);
     case Kernel::poly6:
-      return sum_units<Poly6Shape>(field, points, list, density);
+      return find_in_groups<Poly6Samples, Poly6Shape>(field, rows, groups, thin, exceptions);
     case Kernel::wyvill:
-      return sum_units<WyvillShape>(field, points, list, density);
+      return find_in_groups<WyvillSamples, WyvillShape>(field, rows, groups, thin, exceptions);
   }
 }
 
@@ -83,10 +126,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meniscus {
 
-HWY_EXPORT(UnitDensities);
+HWY_EXPORT(AddToRows);
+HWY_EXPORT(FindExceptions);
 
-void unit_densities(const RaycastField& field, const MassPoints& points, PacketList& list, float* density) {
-  HWY_DYNAMIC_DISPATCH(UnitDensities)(field, points, list, density);
+void MassRows::add(const RaycastField& field, vec3 middle, BandGrid::Run sorted) {
+  const std::size_t wanted = count + (sorted.end - sorted.begin) + 2 * kPacket;
+  for (auto axis : {&MassRows::x, &MassRows::y, &MassRows::z, &MassRows::fall}) (this->*axis).reserve(wanted, count);
+  HWY_DYNAMIC_DISPATCH(AddToRows)(field, middle, sorted, *this);
+}
+
+void find_exceptions(const RaycastField& field, const MassRows& rows, std::span<const MassGroup> groups, float thin,
+                     std::vector<MassException>& exceptions) {
+  HWY_DYNAMIC_DISPATCH(FindExceptions)(field, rows, groups, thin, exceptions);
 }
 
 }  // namespace meniscus

@@ -65,11 +65,13 @@ inline float mass_at(const MassRule& rule, float density) {
   return 1.0f + (rule.lone_mass - 1.0f) * std::clamp(thin, 0.0f, 1.0f);
 }
 
+/// Above this density particles count as packed closer than inside the water.
+constexpr float kPackedDensity = 1.2f;
 /// Radius of the sphere that a ray has to enter before it can meet the surface near a particle, m: one spacing
 /// at iso-values from 1/2 up, more below and where particles are packed closer than inside the water.
 inline float entry_radius_at(const RaycastOptions& options, float density) {
   const float loose = std::clamp(1.0f + 2.0f * (0.5f - options.iso), 1.0f, 2.0f);
-  const float packed = 1.0f + std::clamp((density - 1.2f) / 1.8f, 0.0f, 1.0f);
+  const float packed = 1.0f + std::clamp((density - kPackedDensity) / 1.8f, 0.0f, 1.0f);
   return std::min(options.spacing * loose * packed, options.smoothing_length);
 }
 
