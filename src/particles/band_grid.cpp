@@ -169,7 +169,6 @@ class BandGrid::Build {
     g.kind_.assign(kCells, open);
     g.full_.assign(kSide, 0);
     g.amidst_.assign(kSide, 0);
-    g.beside_.assign(kSide, 0);
     if (options_.well_filled == 0) return;
     std::vector<BandBits> hidden(blocks);
     std::vector<BandSides> sides(blocks);
@@ -208,7 +207,6 @@ class BandGrid::Build {
       if (apart[block] != none) g.kind_page_[block] = pages++;
     }
     g.kind_.resize(std::size_t{pages} * kCells);
-    g.beside_.resize(std::size_t{pages} * kSide, 0);
     g.full_.resize(std::size_t{pages} * kSide, 0);
     g.amidst_.resize(std::size_t{pages} * kSide, 0);
     parallel_for(blocks, kBlocks, [&](std::size_t begin, std::size_t end) {
@@ -222,7 +220,6 @@ class BandGrid::Build {
                                                                               : open;
           g.full_[page * kSide + z] = ~full[block][z];
           g.amidst_[page * kSide + z] = amidst[block][z];
-          g.beside_[page * kSide + z] = ~(apart[block][z] | hidden[block][z]);
         }
       }
     });
@@ -419,7 +416,7 @@ std::uint64_t BandGrid::memory_bytes() const {
   };
   return 4 * sizeof(float) * static_cast<std::uint64_t>(kept_ + kPadding) + bytes(corner_) + bytes(table_) +
          bytes(hashed_) + bytes(first_) + bytes(page_) + bytes(kind_page_) + bytes(start_) + bytes(count_) +
-         bytes(kind_) + bytes(full_) + bytes(amidst_) + bytes(beside_);
+         bytes(kind_) + bytes(full_) + bytes(amidst_);
 }
 
 }  // namespace meniscus

@@ -75,10 +75,6 @@ class BandGrid {
   const std::uint64_t* amidst(int block) const {
     return &amidst_[std::size_t{kind_page_[static_cast<std::size_t>(block)]} * kSide];
   }
-  /// Which open cells of a block touch a hidden (or deep) one, in the same form.
-  const std::uint64_t* beside(int block) const {
-    return &beside_[std::size_t{kind_page_[static_cast<std::size_t>(block)]} * kSide];
-  }
   /// Whether all of a block's cells are open (and all its particles kept) and touch no hidden one: the common case in
   /// spray.
   bool all_open(int block) const { return kind_page_[static_cast<std::size_t>(block)] == 0; }
@@ -144,7 +140,6 @@ class BandGrid {
   PagedVector<std::uint32_t> count_;      ///< by page and cell
   PagedVector<Kind> kind_;                ///< by page and cell
   std::vector<std::uint64_t> amidst_;     ///< by page, z; bit 8 y + x
-  std::vector<std::uint64_t> beside_;     ///< by page, z; bit 8 y + x
   std::vector<std::uint64_t> full_;       ///< by page, z; bit 8 y + x
 };
 
