@@ -61,6 +61,13 @@ HWY_INLINE Vec power_of_two(Vec v) {
   return hn::BitCast(d, hn::Add(hn::BitCast(di, power), hn::ShiftLeft<23>(hn::BitCast(di, shifted))));
 }
 
+/// How the distance off a pixel's tangent plane follows from what is kept of another pixel's place.
+enum class Places {
+  perspective,  ///< the depth along the view's axis, times the normal's product with a ray that is linear in x and y
+  parallel,     ///< the depth, times the normal's product with the axis, plus what is linear in x and y
+  anywhere      ///< three coordinates
+};
+
 /// Points and normals of a tile and the window's border around it: row by row, in a row one component after another.
 /// Without surface all are zero, which adds nothing to any sum.
 class FilterTile {
@@ -82,7 +89,14 @@ class FilterTile {
     const int first = std::max(y0_ - job_.radius, 0);
     const int last = std::min(y0_ + height_ + job_.radius, job_.depth.height());
     for (int y = first; y < last; ++y) fill_row(y);
-    for (int y = 0; y < height_; ++y) filter_row(y);
+    const Projection projection = job_.view.projection;
+    for (int y = 0; y < height_; ++y)
+      if (projection == Projection::perspective)
+        filter_row<Places::perspective>(y);
+      else if (projection == Projection::orthographic)
+        filter_row<Places::parallel>(y);
+      else
+        filter_row<Places::anywhere>(y);
   }
 
  private:
@@ -107,6 +121,7 @@ class FilterTile {
     const float* normals = &job_.normals.row(y)->x;
     if (job_.view.projection == Projection::cube) return fill_row_of_cube(y, first, last);
     const PictureRays rays(job_.view);
+    const bool perspective = job_.view.projection == Projection::perspective;
     const Vec row = hn::Set(d, static_cast<float>(y) + 0.5f), by = hn::Set(d, scale());
     const Vec infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     for (int x = first; x < last; x += lanes) {
@@ -123,13 +138,17 @@ class FilterTile {
       const Vec along = hn::LoadU(d, t);
       const auto hit = hn::Lt(along, infinity);
       if (hn::AllFalse(d, hit)) continue;
-      Vec3V normal, direction;
+      Vec3V normal;
       hn::LoadInterleaved3(d, n, normal.x, normal.y, normal.z);
-      const Vec column = hn::Iota(d, static_cast<float>(x) + 0.5f);
-      const Vec3V point =
-          scaled(rays.point(column, row, hn::IfThenElseZero(hit, along), direction), hn::IfThenElseZero(hit, by));
-      const Vec values[] = {point.x, point.y, point.z, normal.x, normal.y, normal.z};
-      for (int i = 0; i < kComponents; ++i) hn::StoreU(hn::IfThenElseZero(hit, values[i]), d, at(x, y) + i * kPitch);
+      Vec place = hn::Mul(along, by);
+      if (perspective) {
+        const Vec column = hn::Iota(d, static_cast<float>(x) + 0.5f);
+        Vec3V direction;
+        rays.point(column, row, along, direction);
+        place = hn::Mul(place, dot(direction, set(job_.view.forward)));
+      }
+      const Vec values[] = {normal.x, normal.y, normal.z, place};
+      for (int i = 0; i < 4; ++i) hn::StoreU(hn::IfThenElseZero(hit, values[i]), d, at(x, y) + i * kPitch);
     }
   }
 
@@ -139,18 +158,20 @@ class FilterTile {
       if (!(depth < std::numeric_limits<float>::infinity())) continue;
       const Ray ray = job_.view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
       const vec3 point = scale() * (ray.origin - job_.view.eye + depth * ray.direction), normal = job_.normals(x, y);
-      const float values[] = {point.x, point.y, point.z, normal.x, normal.y, normal.z};
+      const float values[] = {normal.x, normal.y, normal.z, point.x, point.y, point.z};
       for (int i = 0; i < kComponents; ++i) at(x, y)[i * kPitch] = values[i];
     }
   }
 
-  static HWY_INLINE Vec3V point_at(const float* pixel) {
+  static HWY_INLINE Vec3V normal_at(const float* pixel) {
     const Tag d;
     return {hn::LoadU(d, pixel), hn::LoadU(d, pixel + kPitch), hn::LoadU(d, pixel + 2 * kPitch)};
   }
-  static HWY_INLINE Vec3V normal_at(const float* pixel) { return point_at(pixel + 3 * kPitch); }
+  static HWY_INLINE Vec3V point_at(const float* pixel) { return normal_at(pixel + 3 * kPitch); }
+  static HWY_INLINE Vec place_at(const float* pixel) { return hn::LoadU(Tag(), pixel + 3 * kPitch); }
 
-  void filter_row(int row) {
+  template <Places kPlaces>
+  HWY_NOINLINE void filter_row(int row) {
     const Tag d;
     const int lanes = static_cast<int>(hn::Lanes(d));
     const Vec zero = hn::Zero(d);
@@ -160,7 +181,8 @@ class FilterTile {
       const Vec3V n = normal_at(centre);
       const auto hit = hn::Gt(dot(n, n), zero);
       if (hn::AllFalse(d, hit)) continue;
-      const Vec3V sum = window_sum(n, centre);
+      TangentPlane<kPlaces> plane(job_.view, x0_ + x, y0_ + row, scale(), n, centre);
+      const Vec3V sum = window_sum(n, plane, centre);
       const Vec size2 = hn::Max(dot(sum, sum), hn::Set(d, 1e-20f));
       const Vec3V result = scaled(sum, hn::IfThenElseZero(hit, hn::Div(hn::Set(d, 1.0f), hn::Sqrt(size2))));
       if (x + lanes <= width_) {
@@ -173,19 +195,69 @@ class FilterTile {
     }
   }
 
-  HWY_INLINE Vec3V window_sum(const Vec3V n, const float* centre) const {
+  /// Distances of pixels from the tangent planes of a vector of pixels.
+  template <Places kPlaces>
+  class TangentPlane {
+   public:
+    HWY_INLINE TangentPlane(const View& view, int x, int y, float scale, Vec3V n, const float* centre) : n_(n) {
+      const Tag d;
+      const float per_pixel = 2.0f * view.half_height / static_cast<float>(view.height);
+      if constexpr (kPlaces == Places::anywhere) {
+        origin_ = dot(n, point_at(centre));
+        return;
+      }
+      const float unit = kPlaces == Places::parallel ? scale : 1.0f;
+      right_ = hn::Mul(dot(n, set(view.right)), hn::Set(d, unit * per_pixel));
+      down_ = hn::Mul(dot(n, set(view.up)), hn::Set(d, -unit * per_pixel));
+      along_ = dot(n, set(view.forward));
+      origin_ = hn::Mul(place_at(centre), along_);
+      if constexpr (kPlaces == Places::perspective) {
+        const Vec off_x = hn::Iota(d, static_cast<float>(x) + 0.5f - 0.5f * static_cast<float>(view.width));
+        const Vec off_y = hn::Set(d, static_cast<float>(y) + 0.5f - 0.5f * static_cast<float>(view.height));
+        along_ = hn::MulAdd(off_x, right_, hn::MulAdd(off_y, down_, along_));
+        origin_ = hn::Mul(place_at(centre), along_);
+      }
+    }
+
+    /// Those of the taps `dy` rows below.
+    HWY_INLINE void set_row(int dy) {
+      if constexpr (kPlaces == Places::perspective)
+        row_ = hn::MulAdd(hn::Set(Tag(), static_cast<float>(dy)), down_, along_);
+      else if constexpr (kPlaces == Places::parallel)
+        row_ = hn::MulSub(hn::Set(Tag(), static_cast<float>(dy)), down_, origin_);
+    }
+
+    HWY_INLINE Vec off(const float* tap, int dx) const {
+      const Tag d;
+      if constexpr (kPlaces == Places::anywhere) {
+        const Vec3V p = point_at(tap);
+        return hn::MulAdd(n_.x, p.x, hn::MulAdd(n_.y, p.y, hn::MulSub(n_.z, p.z, origin_)));
+      } else {
+        const Vec linear = hn::MulAdd(hn::Set(d, static_cast<float>(dx)), right_, row_);
+        return kPlaces == Places::perspective ? hn::MulSub(place_at(tap), linear, origin_)
+                                              : hn::MulAdd(place_at(tap), along_, linear);
+      }
+    }
+
+   private:
+    Vec3V n_;
+    Vec right_, down_, along_, origin_, row_;
+  };
+
+  template <Places kPlaces>
+  HWY_INLINE Vec3V window_sum(const Vec3V n, TangentPlane<kPlaces>& plane, const float* centre) const {
     const Tag d;
-    const Vec off_origin = dot(n, point_at(centre));
     const Vec3V for_agreement = scaled(n, hn::Set(d, kLog2E / kNormalSharpness));
     const float* spatial = job_.spatial;
     const int radius = job_.radius;
     Vec3V sum = n;
     for (int dy = -radius; dy <= radius; ++dy) {
-      const float* tap = centre + dy * static_cast<std::ptrdiff_t>(kRow) - radius;
-      for (int dx = -radius; dx <= radius; ++dx, ++tap, ++spatial) {
+      const float* row = centre + dy * static_cast<std::ptrdiff_t>(kRow);
+      plane.set_row(dy);
+      for (int dx = -radius; dx <= radius; ++dx, ++spatial) {
         if (dx == 0 && dy == 0) continue;
-        const Vec3V p = point_at(tap), q = normal_at(tap);
-        const Vec off = hn::MulAdd(n.x, p.x, hn::MulAdd(n.y, p.y, hn::MulSub(n.z, p.z, off_origin)));
+        const Vec3V q = normal_at(row + dx);
+        const Vec off = plane.off(row + dx, dx);
         Vec exponent = hn::MulAdd(for_agreement.z, q.z, hn::Set(d, *spatial));
         exponent = hn::MulAdd(for_agreement.x, q.x, hn::MulAdd(for_agreement.y, q.y, exponent));
         sum = combined(sum, power_of_two(hn::NegMulAdd(off, off, exponent)), q);
