@@ -26,6 +26,18 @@ struct BandCells {
 void find_dense_keys(const BandCells& cells, const float* x, const float* y, const float* z, std::size_t count,
                      std::uint32_t* keys);
 
+/// Those of at most 256 particles that do not lie in cells that are left out, in the given order.
+/// @param left_out  bit `key` (from the lowest of each word on) tells whether the cell of that key is
+/// @param keys      as by find_dense_keys(); count + kBandLanes values
+/// @param places    from 0 on, among the particles; count + kBandLanes values
+/// @return          how many there are
+std::size_t find_kept_keys(const BandCells& cells, const float* x, const float* y, const float* z, std::size_t count,
+                           const std::uint32_t* left_out, std::uint32_t* keys, std::uint32_t* places);
+constexpr std::size_t kBandLanes = 16;  ///< values beyond the last that may be written
+
+/// Which of 512 counts are at least `least`, a bit each from the lowest of each word on.
+void find_at_least(const std::uint32_t* counts, std::uint32_t least, std::uint64_t* bits);
+
 /// Cell coordinates of at most 256 values along one axis.
 void find_cell_coordinates(float low, float per_cell, const float* values, std::size_t count, std::int32_t* cells);
 

@@ -14,6 +14,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using Tag = HWY_CAPPED(float, 16);
 using IntTag = hn::RebindToSigned<Tag>;
+using WordTag = hn::RebindToUnsigned<Tag>;
 
 HWY_INLINE void find_range(const float* HWY_RESTRICT values, std::size_t count, float& low, float& high) {
   const Tag d;
@@ -47,6 +48,38 @@ HWY_INLINE hn::Vec<IntTag> cells_of(const float* HWY_RESTRICT values, float low,
   return hn::ConvertTo(IntTag(), hn::Mul(hn::Sub(hn::LoadU(d, values), hn::Set(d, low)), hn::Set(d, per_cell)));
 }
 
+class DenseKeys {
+ public:
+  explicit DenseKeys(const BandCells& cells) : cells_(cells) {}
+
+  HWY_INLINE hn::Vec<WordTag> vector(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
+                                     const float* HWY_RESTRICT z) const {
+    const IntTag d;
+    const auto across = hn::Set(d, cells_.blocks_x), down = hn::Set(d, cells_.blocks_y), in_block = hn::Set(d, 7);
+    const auto cx = cells_of(x, cells_.low.x, cells_.per_cell), cy = cells_of(y, cells_.low.y, cells_.per_cell),
+               cz = cells_of(z, cells_.low.z, cells_.per_cell);
+    const auto block = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ShiftRight<3>(cz), down), hn::ShiftRight<3>(cy)), across),
+                               hn::ShiftRight<3>(cx));
+    const auto cell = hn::Or(hn::ShiftLeft<6>(hn::And(cz, in_block)),
+                             hn::Or(hn::ShiftLeft<3>(hn::And(cy, in_block)), hn::And(cx, in_block)));
+    return hn::BitCast(WordTag(), hn::Or(hn::ShiftLeft<9>(block), cell));
+  }
+
+  std::uint32_t one(float x, float y, float z) const {
+    const auto cell = [&](float value, float low) {
+      return static_cast<std::uint32_t>((value - low) * cells_.per_cell);
+    };
+    const std::uint32_t cx = cell(x, cells_.low.x), cy = cell(y, cells_.low.y), cz = cell(z, cells_.low.z);
+    const std::uint32_t block = ((cz >> 3) * static_cast<std::uint32_t>(cells_.blocks_y) + (cy >> 3)) *
+                                    static_cast<std::uint32_t>(cells_.blocks_x) +
+                                (cx >> 3);
+    return block << 9 | (cz & 7) << 6 | (cy & 7) << 3 | (cx & 7);
+  }
+
+ private:
+  BandCells cells_;
+};
+
 }  // namespace
 
 void FindPieceBoxes(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
@@ -61,30 +94,51 @@ void FindPieceBoxes(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, co
 
 void FindDenseKeys(const BandCells& cells, const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
                    const float* HWY_RESTRICT z, std::size_t count, std::uint32_t* HWY_RESTRICT keys) {
-  const IntTag di;
-  const hn::RebindToUnsigned<IntTag> du;
-  const std::size_t lanes = hn::Lanes(di);
-  const auto across = hn::Set(di, cells.blocks_x), down = hn::Set(di, cells.blocks_y), in_block = hn::Set(di, 7);
+  const DenseKeys keys_of(cells);
+  const std::size_t lanes = hn::Lanes(IntTag());
   std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) hn::StoreU(keys_of.vector(x + i, y + i, z + i), WordTag(), keys + i);
+  for (; i < count; ++i) keys[i] = keys_of.one(x[i], y[i], z[i]);
+}
+
+std::size_t FindKeptKeys(const BandCells& cells, const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
+                         const float* HWY_RESTRICT z, std::size_t count, const std::uint32_t* HWY_RESTRICT left_out,
+                         std::uint32_t* HWY_RESTRICT keys, std::uint32_t* HWY_RESTRICT places) {
+  const WordTag d;
+  const DenseKeys keys_of(cells);
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0, kept = 0;
+  const auto keep_one = [&](std::uint32_t key, std::size_t place) {
+    keys[kept] = key;
+    places[kept] = static_cast<std::uint32_t>(place);
+    kept += ~left_out[key >> 5] >> (key & 31u) & 1u;
+  };
   for (; i + lanes <= count; i += lanes) {
-    const auto cx = cells_of(x + i, cells.low.x, cells.per_cell), cy = cells_of(y + i, cells.low.y, cells.per_cell),
-               cz = cells_of(z + i, cells.low.z, cells.per_cell);
-    const auto block = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ShiftRight<3>(cz), down), hn::ShiftRight<3>(cy)), across),
-                               hn::ShiftRight<3>(cx));
-    const auto cell = hn::Or(hn::ShiftLeft<6>(hn::And(cz, in_block)),
-                             hn::Or(hn::ShiftLeft<3>(hn::And(cy, in_block)), hn::And(cx, in_block)));
-    hn::StoreU(hn::BitCast(du, hn::Or(hn::ShiftLeft<9>(block), cell)), du, keys + i);
+    const auto key = keys_of.vector(x + i, y + i, z + i);
+    alignas(64) std::uint32_t all[16];
+    hn::Store(key, d, all);
+#if HWY_TARGET == HWY_AVX3
+    // Particles that follow each other lie in two blocks at most, mostly: a vector holds all 512 bits of each.
+    const std::uint32_t first = all[0] >> 9, last = all[15] >> 9;
+    const auto block = hn::ShiftRight<9>(key);
+    const auto in_first = hn::Eq(block, hn::Set(d, first)), in_last = hn::Eq(block, hn::Set(d, last));
+    if (HWY_LIKELY(hn::AllTrue(d, hn::Or(in_first, in_last)))) {
+      const auto word = hn::IndicesFromVec(d, hn::And(hn::ShiftRight<5>(key), hn::Set(d, 15u)));
+      const auto bits =
+          hn::IfThenElse(in_first, hn::TableLookupLanes(hn::LoadU(d, left_out + std::size_t{16} * first), word),
+                         hn::TableLookupLanes(hn::LoadU(d, left_out + std::size_t{16} * last), word));
+      const auto bit = hn::And(hn::Shr(bits, hn::And(key, hn::Set(d, 31u))), hn::Set(d, 1u));
+      const auto here = hn::Eq(bit, hn::Zero(d));
+      if (hn::AllFalse(d, here)) continue;
+      hn::CompressStore(key, here, d, keys + kept);
+      kept += hn::CompressStore(hn::Iota(d, static_cast<std::uint32_t>(i)), here, d, places + kept);
+      continue;
+    }
+#endif
+    for (std::size_t l = 0; l < lanes; ++l) keep_one(all[l], i + l);
   }
-  for (; i < count; ++i) {
-    const auto cell = [&](float value, float low) {
-      return static_cast<std::uint32_t>((value - low) * cells.per_cell);
-    };
-    const std::uint32_t cx = cell(x[i], cells.low.x), cy = cell(y[i], cells.low.y), cz = cell(z[i], cells.low.z);
-    const std::uint32_t block = ((cz >> 3) * static_cast<std::uint32_t>(cells.blocks_y) + (cy >> 3)) *
-                                    static_cast<std::uint32_t>(cells.blocks_x) +
-                                (cx >> 3);
-    keys[i] = block << 9 | (cz & 7) << 6 | (cy & 7) << 3 | (cx & 7);
-  }
+  for (; i < count; ++i) keep_one(keys_of.one(x[i], y[i], z[i]), i);
+  return kept;
 }
 
 void FindCellCoordinates(float low, float per_cell, const float* HWY_RESTRICT values, std::size_t count,
@@ -96,6 +150,22 @@ void FindCellCoordinates(float low, float per_cell, const float* HWY_RESTRICT va
   for (; i < count; ++i) cells[i] = static_cast<std::int32_t>((values[i] - low) * per_cell);
 }
 
+void FindAtLeast(const std::uint32_t* HWY_RESTRICT counts, std::uint32_t least, std::uint64_t* HWY_RESTRICT bits) {
+  const WordTag d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto enough = hn::Set(d, least);
+  for (std::size_t word = 0; word < 8; ++word) {
+    std::uint64_t all = 0;
+    for (std::size_t k = 0; k < 64; k += lanes) {
+      std::uint8_t mask[8] = {};
+      const auto here = hn::LoadU(d, counts + 64 * word + k);
+      hn::StoreMaskBits(d, hn::Eq(hn::Max(here, enough), here), mask);
+      all |= (std::uint64_t{mask[0]} | std::uint64_t{mask[1]} << 8) << k;
+    }
+    bits[word] = all;
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace meniscus
 HWY_AFTER_NAMESPACE();
@@ -105,7 +175,9 @@ namespace meniscus {
 
 HWY_EXPORT(FindPieceBoxes);
 HWY_EXPORT(FindDenseKeys);
+HWY_EXPORT(FindKeptKeys);
 HWY_EXPORT(FindCellCoordinates);
+HWY_EXPORT(FindAtLeast);
 
 void find_piece_boxes(const float* x, const float* y, const float* z, std::size_t count, Bounds* boxes) {
   HWY_DYNAMIC_DISPATCH(FindPieceBoxes)(x, y, z, count, boxes);
@@ -114,6 +186,15 @@ void find_piece_boxes(const float* x, const float* y, const float* z, std::size_
 void find_dense_keys(const BandCells& cells, const float* x, const float* y, const float* z, std::size_t count,
                      std::uint32_t* keys) {
   HWY_DYNAMIC_DISPATCH(FindDenseKeys)(cells, x, y, z, count, keys);
+}
+
+std::size_t find_kept_keys(const BandCells& cells, const float* x, const float* y, const float* z, std::size_t count,
+                           const std::uint32_t* left_out, std::uint32_t* keys, std::uint32_t* places) {
+  return HWY_DYNAMIC_DISPATCH(FindKeptKeys)(cells, x, y, z, count, left_out, keys, places);
+}
+
+void find_at_least(const std::uint32_t* counts, std::uint32_t least, std::uint64_t* bits) {
+  HWY_DYNAMIC_DISPATCH(FindAtLeast)(counts, least, bits);
 }
 
 void find_cell_coordinates(float low, float per_cell, const float* values, std::size_t count, std::int32_t* cells) {

@@ -174,12 +174,7 @@ class BandGrid::Build {
     std::vector<BandSides> sides(blocks);
     parallel_for(blocks, kBlocks, [&](std::size_t begin, std::size_t end) {
       for (std::size_t block = begin; block < end; ++block) {
-        const std::uint32_t* counts = g.counts(static_cast<int>(block));
-        for (std::size_t z = 0; z < kSide; ++z) {
-          std::uint64_t word = 0;
-          for (std::size_t k = 0; k < 64; ++k) word |= std::uint64_t{counts[64 * z + k] >= options_.well_filled} << k;
-          hidden[block][z] = word;
-        }
+        find_at_least(g.counts(static_cast<int>(block)), options_.well_filled, hidden[block].data());
         const glm::ivec3 at = g.corner_[block] / kSide;
         sides[block] = {g.find(at.x - 1, at.y, at.z), g.find(at.x + 1, at.y, at.z), g.find(at.x, at.y - 1, at.z),
                         g.find(at.x, at.y + 1, at.z), g.find(at.x, at.y, at.z - 1), g.find(at.x, at.y, at.z + 1)};
@@ -195,29 +190,31 @@ class BandGrid::Build {
     for (BandBits& block : full)
       for (std::uint64_t& word : block) word = ~word;
     erode(full, sides, 1, true);
-    std::vector<BandBits> apart = hidden;  // cells that neither are hidden nor touch one that is
-    for (BandBits& block : apart)
-      for (std::uint64_t& word : block) word = ~word;
-    erode(apart, sides, 1, true);
-    std::uint32_t pages = 1;
+    BandBits none, all;
+    none.fill(0);
+    all.fill(~std::uint64_t{0});
+    std::uint32_t pages = 2;
     for (std::size_t block = 0; block < blocks; ++block) {
-      g.deep_ = g.deep_ || deep_[block] != BandBits{};
-      BandBits none;
-      none.fill(~std::uint64_t{0});
-      if (apart[block] != none) g.kind_page_[block] = pages++;
+      g.deep_ = g.deep_ || deep_[block] != none;
+      if (hidden[block] == none && full[block] == all) continue;
+      g.kind_page_[block] = deep_[block] == all && amidst[block] == all ? 1 : pages++;
+    }
+    if (pages == 2 && !g.deep_) {
+      deep_ = {};
+      return;
     }
     g.kind_.resize(std::size_t{pages} * kCells);
-    g.full_.resize(std::size_t{pages} * kSide, 0);
-    g.amidst_.resize(std::size_t{pages} * kSide, 0);
+    g.full_.resize(std::size_t{pages} * kSide, ~std::uint64_t{0});
+    g.amidst_.resize(std::size_t{pages} * kSide, ~std::uint64_t{0});
+    std::fill_n(&g.kind_[kCells], kCells, deep);
     parallel_for(blocks, kBlocks, [&](std::size_t begin, std::size_t end) {
       for (std::size_t block = begin; block < end; ++block) {
         const std::size_t page = g.kind_page_[block];
-        if (page == 0) continue;
+        if (page < 2) continue;
         for (std::size_t z = 0; z < kSide; ++z) {
-          for (std::size_t k = 0; k < 64; ++k)
-            g.kind_[page * kCells + 64 * z + k] = deep_[block][z] >> k & 1    ? deep
-                                                  : hidden[block][z] >> k & 1 ? hidden_
-                                                                              : open;
+          for (std::size_t k = 0; k < 64; ++k)  // deep ones are hidden, too
+            g.kind_[page * kCells + 64 * z + k] =
+                static_cast<Kind>((hidden[block][z] >> k & 1) + (deep_[block][z] >> k & 1));
           g.full_[page * kSide + z] = ~full[block][z];
           g.amidst_[page * kSide + z] = amidst[block][z];
         }
@@ -230,14 +227,27 @@ class BandGrid::Build {
     return !deep_.empty() && (deep_[block][cell / 64] >> cell % 64 & 1) != 0;
   }
 
+  /// Whether all of a block's particles are left out.
+  bool all_deep(std::size_t block) const {
+    return !deep_.empty() && std::all_of(deep_[block].begin(), deep_[block].end(),
+                                         [](std::uint64_t word) { return word == ~std::uint64_t{0}; });
+  }
+
   /// Where the kept particles of each cell go, and in each cell those of each part.
   void set_starts() {
     BandGrid& g = grid_;
     const std::size_t blocks = keys_.size();
-    g.start_.resize(own_.size() * (kCells + 1));
+    std::vector<std::uint32_t> start_page(own_.size());
+    std::uint32_t pages = 1;
+    for (std::size_t page = 0; page < own_.size(); ++page) start_page[page] = all_deep(own_[page]) ? 0 : pages++;
+    g.start_page_.resize(blocks);
+    for (std::size_t block = 0; block < blocks; ++block) g.start_page_[block] = start_page[g.page_[block]];
+    g.start_.resize(std::size_t{pages} * (kCells + 1));
+    std::fill_n(g.start_.begin(), kCells + 1, 0u);
     parallel_for(own_.size(), kBlocks, [&](std::size_t begin, std::size_t end) {
       for (std::size_t page = begin; page < end; ++page) {
-        std::uint32_t* start = &g.start_[page * (kCells + 1)];
+        if (start_page[page] == 0) continue;
+        std::uint32_t* start = &g.start_[std::size_t{start_page[page]} * (kCells + 1)];
         std::uint32_t sum = 0;
         for (std::size_t cell = 0; cell < kCells; ++cell) {
           start[cell] = sum;
@@ -250,14 +260,16 @@ class BandGrid::Build {
     std::uint32_t sum = 0;
     for (std::size_t block = 0; block < blocks; ++block) {
       g.first_[block] = sum;
-      sum += g.start_[std::size_t{g.page_[block]} * (kCells + 1) + kCells];
+      sum += g.start_[std::size_t{g.start_page_[block]} * (kCells + 1) + kCells];
     }
     g.first_[blocks] = sum;
     g.kept_ = sum;
     parallel_for(blocks, kBlocks, [&](std::size_t begin, std::size_t end) {
       std::uint32_t next[kCells];
       for (std::size_t block = begin; block < end; ++block) {
-        const std::uint32_t* start = &g.start_[std::size_t{g.page_[block]} * (kCells + 1)];
+        // Of a dense table the particles of deep cells are told by their keys.
+        if (dense_blocks_ > 0 && g.start_page_[block] == 0) continue;
+        const std::uint32_t* start = &g.start_[std::size_t{g.start_page_[block]} * (kCells + 1)];
         for (std::size_t cell = 0; cell < kCells; ++cell)
           next[cell] = is_deep(block, cell) ? kLeftOut : g.first_[block] + start[cell];
         for (BandPart& part : parts_)
@@ -301,24 +313,51 @@ class BandGrid::Build {
       g.*axis = paged_array<float>(padded);
       std::fill_n((g.*axis).get() + g.kept_, kPadding, kFarAway);
     }
-    g.index_ = paged_array<std::uint32_t>(padded);
+    if (options_.keep_index) g.index_ = paged_array<std::uint32_t>(padded);
     float *x = g.x_.get(), *y = g.y_.get(), *z = g.z_.get();
     std::uint32_t* index = g.index_.get();
+    const std::vector<std::uint32_t> left_out = deep_bits();
     parallel_for(parts_.size(), 1, [&](std::size_t p, std::size_t) {
       BandPart& part = parts_[p];
-      for (std::size_t from = part.begin(); from < part.end(); from += kBandBox) {
-        if (!deep_.empty() && all_deep(boxes_[from / kBandBox])) continue;
-        part.for_each_particle(particles_, from, std::min(from + kBandBox, part.end()),
-                               [&](std::size_t i, std::uint32_t& next) {
-                                 if (next == kLeftOut) return;
-                                 const std::uint32_t to = next++;
-                                 x[to] = particles_.x[i];
-                                 y[to] = particles_.y[i];
-                                 z[to] = particles_.z[i];
-                                 index[to] = static_cast<std::uint32_t>(i);
-                               });
+      const auto keep = [&](std::size_t i, std::uint32_t& next) {
+        if (next == kLeftOut) return;
+        const std::uint32_t to = next++;
+        x[to] = particles_.x[i];
+        y[to] = particles_.y[i];
+        z[to] = particles_.z[i];
+        if (index) index[to] = static_cast<std::uint32_t>(i);
+      };
+      for (std::size_t from = part.begin(); from < part.end(); from += kBandPiece) {
+        const std::size_t end = std::min(from + kBandPiece, part.end());
+        if (!deep_.empty() && all_deep(box_of(from, end))) continue;
+        if (left_out.empty())
+          part.for_each_particle(particles_, from, end, keep);
+        else
+          part.for_each_kept(particles_, from, end, left_out.data(), keep);
       }
     });
+  }
+
+  /// Of the particles from .. end - 1, of whole boxes.
+  Bounds box_of(std::size_t from, std::size_t end) const {
+    Bounds box = boxes_[from / kBandBox];
+    for (std::size_t k = from / kBandBox + 1; k * kBandBox < end; ++k) {
+      box.low = glm::min(box.low, boxes_[k].low);
+      box.high = glm::max(box.high, boxes_[k].high);
+    }
+    return box;
+  }
+
+  /// Which cells are deep, a bit each, by key of the dense table; empty if none is, or if there is no such table.
+  std::vector<std::uint32_t> deep_bits() const {
+    if (deep_.empty() || dense_blocks_ == 0) return {};
+    std::vector<std::uint32_t> bits(dense_blocks_ * kCells / 32);
+    parallel_for(keys_.size(), kBlocks, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t block = begin; block < end; ++block)
+        for (std::size_t k = 0; k < kCells / 32; ++k)
+          bits[keys_[block] * (kCells / 32) + k] = static_cast<std::uint32_t>(deep_[block][k / 2] >> (k % 2 * 32));
+    });
+    return bits;
   }
 
   static constexpr std::uint32_t kLeftOut = 0xffffffffu;
@@ -414,9 +453,9 @@ std::uint64_t BandGrid::memory_bytes() const {
   const auto bytes = [](const auto& values) {
     return static_cast<std::uint64_t>(values.capacity()) * sizeof(values[0]);
   };
-  return 4 * sizeof(float) * static_cast<std::uint64_t>(kept_ + kPadding) + bytes(corner_) + bytes(table_) +
-         bytes(hashed_) + bytes(first_) + bytes(page_) + bytes(kind_page_) + bytes(start_) + bytes(count_) +
-         bytes(kind_) + bytes(full_) + bytes(amidst_);
+  return (index_ ? 4 : 3) * sizeof(float) * static_cast<std::uint64_t>(kept_ + kPadding) + bytes(corner_) +
+         bytes(table_) + bytes(hashed_) + bytes(first_) + bytes(page_) + bytes(start_page_) + bytes(kind_page_) +
+         bytes(start_) + bytes(count_) + bytes(kind_) + bytes(full_) + bytes(amidst_);
 }
 
 }  // namespace meniscus

@@ -34,6 +34,7 @@ class BandGrid {
     float cell_size = 0;            ///< m, > 0
     std::uint32_t well_filled = 0;  ///< particles; 0: no cell is, all particles are kept
     int kept_layers = 2;            ///< of hidden cells whose particles are kept
+    bool keep_index = true;         ///< whether given_index() will be asked for
   };
 
   BandGrid() = default;
@@ -51,7 +52,7 @@ class BandGrid {
   const float* y() const { return y_.get(); }
   const float* z() const { return z_.get(); }
   vec3 position(std::size_t sorted) const { return {x()[sorted], y()[sorted], z()[sorted]}; }
-  /// Index in the given order of the particle at a place of the sorted order.
+  /// Index in the given order of the particle at a place of the sorted order; not without Options::keep_index.
   std::uint32_t given_index(std::size_t sorted) const { return index_.get()[sorted]; }
 
   struct Run {
@@ -82,7 +83,7 @@ class BandGrid {
   /// Kept particles of the cells first .. last (both included) of a block.
   Run run(int block, int first, int last) const {
     const auto at = static_cast<std::size_t>(block);
-    const std::uint32_t* start = &start_[std::size_t{page_[at]} * (kCells + 1)];
+    const std::uint32_t* start = &start_[std::size_t{start_page_[at]} * (kCells + 1)];
     return {std::size_t{first_[at]} + start[first], std::size_t{first_[at]} + start[last + 1]};
   }
   Run run(int block) const { return run(block, 0, kCells - 1); }  ///< all of a block's
@@ -128,19 +129,20 @@ class BandGrid {
   int blocks_x_ = 0, blocks_y_ = 0, blocks_z_ = 0;
   bool deep_ = false;
   Bounds bounds_;
-  std::shared_ptr<float[]> x_, y_, z_;  ///< not changed after they have been made: copies share them
-  std::shared_ptr<std::uint32_t[]> index_;
+  std::shared_ptr<float[]> x_, y_, z_;      ///< not changed after they have been made: copies share them
+  std::shared_ptr<std::uint32_t[]> index_;  ///< none without keep_index
   std::vector<glm::ivec3> corner_;
-  std::vector<std::int32_t> table_;       ///< block by block coordinates, or empty: hashed
-  std::vector<std::int32_t> hashed_;      ///< block or -1, by hash
-  std::vector<std::uint32_t> first_;      ///< kept particle by block, and one more at the end
-  std::vector<std::uint32_t> page_;       ///< of start_ and count_, by block; shared by those of a single particle
-  std::vector<std::uint32_t> kind_page_;  ///< of kind_ and full_, by block; 0: all are open
-  PagedVector<std::uint32_t> start_;      ///< by page and cell, one more a page: from the block's first particle on
-  PagedVector<std::uint32_t> count_;      ///< by page and cell
-  PagedVector<Kind> kind_;                ///< by page and cell
-  std::vector<std::uint64_t> amidst_;     ///< by page, z; bit 8 y + x
-  std::vector<std::uint64_t> full_;       ///< by page, z; bit 8 y + x
+  std::vector<std::int32_t> table_;        ///< block by block coordinates, or empty: hashed
+  std::vector<std::int32_t> hashed_;       ///< block or -1, by hash
+  std::vector<std::uint32_t> first_;       ///< kept particle by block, and one more at the end
+  std::vector<std::uint32_t> page_;        ///< of count_, by block; shared by those of a single particle
+  std::vector<std::uint32_t> start_page_;  ///< of start_, by block; shared, too, by those whose particles are left out
+  std::vector<std::uint32_t> kind_page_;   ///< of kind_, amidst_ and full_, by block; 0: all are open; 1: all are deep
+  PagedVector<std::uint32_t> start_;       ///< by page and cell, one more a page: from the block's first particle on
+  PagedVector<std::uint32_t> count_;       ///< by page and cell
+  PagedVector<Kind> kind_;                 ///< by page and cell
+  std::vector<std::uint64_t> amidst_;      ///< by page, z; bit 8 y + x
+  std::vector<std::uint64_t> full_;        ///< by page, z; bit 8 y + x
 };
 
 template <class Visit>

@@ -64,6 +64,17 @@ class BandPart {
     }
   }
 
+  /// The same for those that do not lie in cells that are left out, by a dense table only.
+  /// @param left_out  bits by key, as find_kept_keys() takes them
+  template <class Visit>
+  void for_each_kept(const Particles& particles, std::size_t from, std::size_t to, const std::uint32_t* left_out,
+                     Visit visit) {
+    std::uint32_t keys[kBandPiece + kBandLanes], places[kBandPiece + kBandLanes];
+    const std::size_t kept = find_kept_keys(cells_, &particles.x[from], &particles.y[from], &particles.z[from],
+                                            to - from, left_out, keys, places);
+    for (std::size_t k = 0; k < kept; ++k) visit(from + places[k], table_[keys[k] >> 9][keys[k] & 511u]);
+  }
+
   /// Key of the block at block coordinates below 2^21, for parts with hashing: rises by z, then y, then x.
   static std::uint64_t key_of(std::uint64_t bx, std::uint64_t by, std::uint64_t bz) { return bz << 42 | by << 21 | bx; }
   static std::size_t hash_of(std::uint64_t key) {

@@ -140,6 +140,14 @@ TEST(BandGrid, KeepsAllWhereNoCellIsWellFilled) {
   expect_as_defined(particles, {2.0f, 0, 2});
 }
 
+TEST(BandGrid, SortsTheSameWithoutIndices) {
+  const Particles particles = shuffled(cubic(32, 30, 34, 0.3), 3);
+  const BandGrid with(particles, {2.0f, 3, 1}), without(particles, {2.0f, 3, 1, false});
+  ASSERT_EQ(with.size(), without.size());
+  for (std::size_t i = 0; i < with.size(); ++i) ASSERT_EQ(with.position(i), without.position(i));
+  EXPECT_EQ(with.memory_bytes() - without.memory_bytes(), 4 * (with.size() + BandGrid::kPadding));
+}
+
 TEST(BandGrid, DoesNotDependOnTheOrderOfBlocksOfTheInput) {
   expect_as_defined(shuffled(cubic(32, 30, 34, 0.3), 3), {2.0f, 3, 1});
 }
