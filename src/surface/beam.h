@@ -22,16 +22,19 @@ struct RayList {
 
 /// Room that a thread keeps from beam to beam.
 struct BeamLists {
-  static constexpr int kRays = 8;  ///< that are looked at in turn, so that none waits for what it has just written
-  PacketList near;
+  static constexpr int kRays = 8;    ///< that are looked at in turn, so that none waits for what it has just written
+  static constexpr int kLevels = 3;  ///< the whole beam's, a quarter's, a sixteenth's
+  PacketList near[kLevels];
   RayList ray[kRays];
 };
 
-/// `count` rays; beyond them the packets hold copies.
+/// `count` rays; beyond them the packets that they fill in part hold copies. Rays that follow each other should run
+/// close together, four and sixteen of them closer than all.
 struct Beam {
   PacketRays rays[kBeam / kPacket];
   float entry[kBeam], exit[kBeam], depth[kBeam];  ///< m along each ray
   int count = 0;
+  float along = 0, across = 0;  ///< m: what rays look at is shared if it lies within so much of each other
 
   vec3 origin(int i) const {
     const PacketRays& of = rays[i / kPacket];

@@ -84,6 +84,25 @@ HWY_NOINLINE float sum_ray_density(const RayList& list, float per_smoothing, flo
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
+struct SumAndSlope {
+  float rho, slope;
+};
+
+/// The same and its derivative along the ray, 1/m, both over scale; of particles that are all alike.
+template <class Shape>
+HWY_NOINLINE SumAndSlope sum_ray_slope(const RayList& list, float per_smoothing, float t) {
+  const Tag d;
+  const std::size_t lanes = hn::Lanes(d);
+  const Vec one = hn::Set(d, 1.0f), at = hn::Set(d, t * per_smoothing);
+  Vec sum = hn::Zero(d), slope = hn::Zero(d);
+  for (std::size_t j = 0; j < list.count; j += lanes) {
+    const Vec along = hn::Sub(at, hn::Load(d, list.place.data() + j));
+    const Vec r2 = hn::MulAdd(along, along, hn::Sub(one, hn::Load(d, list.core.data() + j)));
+    Shape::exact(r2, along, one, hn::Load(d, list.mass.data() + j), sum, slope);
+  }
+  return {hn::GetLane(hn::SumOfLanes(d, sum)), Shape::kSlope * per_smoothing * hn::GetLane(hn::SumOfLanes(d, slope))};
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace meniscus

@@ -9,7 +9,9 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-constexpr float kWidestBeam = 2.0f;  ///< spacings across, as far as pixels are not wider
+constexpr float kWidestBeam = 12.0f;   ///< spacings across, as far as pixels are not wider
+constexpr float kLeastAlong = 2.5f;    ///< spacings along rays that is shared
+constexpr float kAcrossPoints = 3.0f;  ///< spacings across rays of points that is shared
 
 thread_local BeamLists thread_lists;
 
@@ -46,9 +48,11 @@ class PictureMarch {
       Pixels pixels;
       for (int y = y0; y < y1; y += side)
         for (int x = x0; x < x1; x += side) {
-          for (int j = y; j < std::min(y + side, y1); ++j)
-            for (int i = x; i < std::min(x + side, x1); ++i)
-              if (may_hit(i * stride, j * stride)) add(pixels, i, j);
+          for (int at = 0; at < side * side; ++at) {  // in the order of a Z-shaped curve
+            const int i = x + ((at & 1) | (at >> 1 & 2) | (at >> 2 & 4)),
+                      j = y + ((at >> 1 & 1) | (at >> 2 & 2) | (at >> 3 & 4));
+            if (i < x1 && j < y1 && may_hit(i * stride, j * stride)) add(pixels, i, j);
+          }
           march(pixels, stride, depth);
         }
     });
@@ -132,6 +136,9 @@ class PictureMarch {
       beam.entry[i] = buffers_.entry(pixels.x[i] * stride, pixels.y[i] * stride);
       beam.exit[i] = buffers_.exit(pixels.x[i] * stride, pixels.y[i] * stride);
     }
+    const float spacing = field_.options.spacing;
+    beam.along = kLeastAlong * spacing + 8.0f * static_cast<float>(stride) * view_.pixel_size(beam.entry[0]);
+    beam.across = kWidestBeam * spacing;
     march_beam(field_, buffers_.eye_in_water, thread_lists, beam);
     for (int i = 0; i < pixels.count; ++i) depth(pixels.x[i], pixels.y[i]) = beam.depth[i];
     pixels.count = 0;
@@ -147,7 +154,7 @@ class PictureMarch {
       found[l] = depth(pixels.x[i], pixels.y[i]);
     }
     const PacketMask mask = (1u << pixels.count) - 1u;
-    const PacketMask good = correct_packet(field_, beam.rays[0], mask, thread_lists.near, found);
+    const PacketMask good = correct_packet(field_, beam.rays[0], mask, thread_lists.near[0], found);
     for (int l = 0; l < pixels.count; ++l)
       if ((good >> l) & 1u)
         depth(pixels.x[l], pixels.y[l]) = found[l];
@@ -172,6 +179,8 @@ void march_points(const RaycastField& field, const View& view, std::span<const v
       beam.count = static_cast<int>(std::min(kAtOnce, points.size() - first));
       std::copy_n(&buffers.entry[first], beam.count, beam.entry);
       std::copy_n(&buffers.exit[first], beam.count, beam.exit);
+      beam.along = kLeastAlong * field.options.spacing;
+      beam.across = kAcrossPoints * field.options.spacing;
       march_beam(field, buffers.eye_in_water, thread_lists, beam);
       for (int i = 0; i < beam.count; ++i) {
         if (!(beam.depth[i] < kInfinity)) continue;
