@@ -18,9 +18,11 @@ struct Compared {
 };
 
 /// The masses of particles in open cells; spacing 1.
-Compared compare(const Particles& particles) {
+Compared compare(const Particles& particles, Kernel kernel = Kernel::cubic_spline, float h = 2.0f) {
   RaycastOptions options;
   options.spacing = 1.0f;
+  options.kernel = kernel;
+  options.smoothing_length = h;
   RaycastField field = make_field(particles, options, {}, Keep::band);
   find_masses(field);
   const MassRule rule = mass_rule(field.options);
@@ -35,7 +37,7 @@ Compared compare(const Particles& particles) {
         for (std::size_t j = 0; j < particles.size(); ++j) {
           const vec3 off = particles.position(j) - grid.position(i);
           const float r = std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z);
-          if (r < 2.0f) density += static_cast<double>(kernel_value(field.options.kernel, r, 2.0f));
+          if (r < h) density += static_cast<double>(kernel_value(kernel, r, h));
         }
         const auto exact = static_cast<float>(density);
         const float off = std::abs(field.mass[i] - mass_at(rule, exact));
@@ -78,6 +80,17 @@ TEST(Masses, AreExactAtTheSurfaceOfDeepWater) {
     EXPECT_LT(found.worst_radius, 0.1f) << n;
     ++n;
   }
+}
+
+TEST(Masses, AreExactForEveryKernelAndSmoothingLength) {
+  for (const Kernel kernel : {Kernel::cubic_spline, Kernel::poly6, Kernel::wyvill})
+    for (const float h : {1.5f, 2.0f, 3.0f})
+      for (const Particles& water : {tilted_sheet(14, 1, 0.2), joined(cubic(14, 12, 13, 0.3), drops(2))}) {
+        const Compared found = compare(water, kernel, h);
+        EXPECT_GT(found.looked_at, 100u) << h;
+        EXPECT_EQ(found.other_mass, 0u) << h << ", by up to " << found.worst_mass;
+        EXPECT_LT(found.worst_radius, 1e-3f) << h;
+      }
 }
 
 TEST(Masses, AreTheSameForAnyNumberOfThreads) {
