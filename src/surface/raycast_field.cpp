@@ -122,7 +122,9 @@ RaycastField make_field(const Particles& particles, const RaycastOptions& given,
   RaycastField field;
   field.options = options;
   field.least_spacing = least_spacing > 0 ? least_spacing : options.spacing;
-  field.grid = BandGrid(particles, grid_options(options, keep, field.least_spacing));
+  BandGrid::Options wanted = grid_options(options, keep, field.least_spacing);
+  wanted.keep_index = keep != Keep::band || !colours.empty();  // who keeps a band asks for positions
+  field.grid = BandGrid(particles, wanted);
   const float volume = options.spacing * options.spacing * options.spacing;
   field.scale = volume * kernel_value(options.kernel, 0.0f, options.smoothing_length);
   field.step = options.step * options.smoothing_length;
