@@ -118,7 +118,8 @@ Image<vec3> with_outlines(const CrownLook& look, const Surface& surface, const V
                           Image<vec3> radiance) {
   OpticsInputs optics;
   optics.options.refraction = RefractionMethod::thickness;
-  const std::vector<std::uint32_t> pixels = silhouette_pixels(view, water, look.scene(), surface.spacing());
+  const std::vector<std::uint32_t> pixels =
+      with_wide_pixels(silhouette_pixels(view, water, look.scene(), surface.spacing()), surface, view, water);
   refine_pixels(surface, view, look.scene(), look.material(), optics, pixels, water, radiance);
   return radiance;
 }

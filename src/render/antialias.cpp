@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kGrid = 4;  ///< rays along each edge of a pixel
 constexpr std::size_t kRays = kGrid * kGrid;
-constexpr float kFoldCosine = 0.819f;         ///< of 35 degrees
+constexpr float kFoldCosine = 0.819f;  ///< of 35 degrees
 
 /// The rays of a pixel in the order in which they are drawn: four, one in each row and column of its grid; four more of
 /// the kind; the rest.
@@ -24,6 +24,33 @@ struct Enough {
   float apart;
 };
 constexpr Enough kEnough[] = {{4, 0.05f}, {8, 0.4f}, {kRays, 1}};
+constexpr Enough kAll[] = {{4, -1}, {8, -1}, {kRays, 1}};
+
+/// Spacings from which on pixels are wide: their rays are no closer than the surface's own detail.
+constexpr float kCoarse = 0.5f, kWide = 4.0f / 3.0f;
+
+/// How wide pixels are, in spacings of the particles; zero where the surface has none.
+class PixelWidth {
+ public:
+  PixelWidth(const Surface& surface, const View& view, const SurfaceBuffers& buffers)
+      : view_(view), depth_(buffers.depth), spacing_(surface.height_field() ? 0.0f : surface.spacing()) {
+    if (!(spacing_ > 0)) return;
+    // Beside the water pixels are as wide as in its middle.
+    const vec3 middle = surface.bounds().centre();
+    middle_ = surface.bounds().empty() ? 0.0f : glm::dot(middle - view.eye, view.forward);
+  }
+
+  float of(std::size_t pixel) const {
+    if (!(spacing_ > 0)) return 0.0f;
+    const float depth = depth_[pixel] < std::numeric_limits<float>::infinity() ? depth_[pixel] : middle_;
+    return view_.pixel_size(std::max(depth, 0.0f)) / spacing_;
+  }
+
+ private:
+  const View& view_;
+  const Image<float>& depth_;
+  float spacing_, middle_ = 0;
+};
 
 struct PixelMean {
   vec3 radiance{0.0f};
@@ -162,9 +189,28 @@ std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuff
   return pixels;
 }
 
+std::vector<std::uint32_t> with_wide_pixels(std::vector<std::uint32_t> pixels, const Surface& surface, const View& view,
+                                            const SurfaceBuffers& buffers) {
+  const PixelWidth width(surface, view, buffers);
+  std::vector<std::uint32_t> wide;
+  for (std::size_t i = 0; i < buffers.coverage.size(); ++i) {
+    const bool near_water = buffers.coverage[i] > 0 || (!buffers.thickness.empty() && buffers.thickness[i] > 0);
+    if (near_water && width.of(i) > kWide) wide.push_back(static_cast<std::uint32_t>(i));
+  }
+  std::vector<std::uint32_t> all;
+  std::set_union(pixels.begin(), pixels.end(), wide.begin(), wide.end(), std::back_inserter(all));
+  return all;
+}
+
 void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,
-                   const OpticsInputs& optics, std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers,
+                   const OpticsInputs& optics, std::span<const std::uint32_t> given, SurfaceBuffers& buffers,
                    Image<vec3>& radiance, std::size_t at_once) {
+  // Those that are narrow first, which share what there is to share with their neighbours.
+  std::vector<std::uint32_t> pixels(given.begin(), given.end());
+  const PixelWidth widths(surface, view, buffers);
+  const auto narrow = static_cast<std::size_t>(
+      std::stable_partition(pixels.begin(), pixels.end(), [&](std::uint32_t i) { return widths.of(i) <= kCoarse; }) -
+      pixels.begin());
   // What refine() looks at must stay as see() returned it, so the means are kept aside until the end.
   std::vector<float> coverage(pixels.size()), thickness(pixels.size());
   const std::size_t width = static_cast<std::size_t>(view.width);
@@ -191,13 +237,13 @@ void refine_pixels(const Surface& surface, const View& view, const Scene& scene,
       }
   };
   std::vector<std::size_t> left, rough;  // pixels of a batch that want more rays
-  for (std::size_t first = 0; first < pixels.size(); first += at_once) {
-    const std::span<const std::uint32_t> batch = pixels.subspan(first, std::min(at_once, pixels.size() - first));
+  const auto refine_some = [&](std::size_t first, std::size_t count, std::span<const Enough> steps) {
+    const std::span<const std::uint32_t> batch = std::span(pixels).subspan(first, count);
     samples.resize(batch.size());
     left.resize(batch.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
     std::size_t drawn = 0;
-    for (const Enough& enough : kEnough) {
+    for (const Enough& enough : steps) {
       draw(batch, left, std::span(kInTurn).subspan(drawn, enough.rays - drawn));
       drawn = enough.rays;
       rough.clear();
@@ -213,7 +259,15 @@ void refine_pixels(const Surface& surface, const View& view, const Scene& scene,
       }
       left.swap(rough);
     }
-  }
+  };
+  for (std::size_t first = 0; first < narrow; first += at_once)
+    refine_some(first, std::min(at_once, narrow - first), kEnough);
+  // Without the picture's normals a surface gives each ray its own.
+  Image<vec3> normals;
+  std::swap(normals, buffers.normal);
+  for (std::size_t first = narrow; first < pixels.size(); first += at_once)
+    refine_some(first, std::min(at_once, pixels.size() - first), kAll);
+  std::swap(normals, buffers.normal);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     buffers.coverage[pixels[i]] = coverage[i];
     if (!buffers.thickness.empty()) buffers.thickness[pixels[i]] = thickness[i];

@@ -14,10 +14,17 @@ namespace meniscus {
 std::vector<std::uint32_t> silhouette_pixels(const View& view, const SurfaceBuffers& buffers, const Scene& scene,
                                              float spacing, const SceneBuffers* solids = nullptr);
 
+/// The same, and all pixels that show water made of particles where they are wider than four thirds of a spacing, with
+/// those around it that have water in their thickness: drops, and what the surface is like between two rays, would come
+/// and go from picture to picture.
+std::vector<std::uint32_t> with_wide_pixels(std::vector<std::uint32_t> pixels, const Surface& surface, const View& view,
+                                            const SurfaceBuffers& buffers);
+
 constexpr std::size_t kPixelsAtOnce = 16384;  ///< bounds the memory: about 650 bytes a pixel
 
 /// Draws those pixels anew as the average of 4 x 4 rays in each, or of four where those see about the same; coverage
-/// and thickness become means as well.
+/// and thickness become means as well. Pixels wider than half a spacing of the surface's particles always have 4 x 4,
+/// whose normals are their own: those of the picture's pixels lie too far apart to tell them.
 /// @param at_once  pixels whose rays are cast together: more for surfaces that do much work for each question
 void refine_pixels(const Surface& surface, const View& view, const Scene& scene, const Material& material,
                    const OpticsInputs& optics, std::span<const std::uint32_t> pixels, SurfaceBuffers& buffers,

@@ -166,8 +166,9 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
   // Outlines.
   if (settings.antialias == Antialias::edges) {
     const StageTimer timer(times, "antialias");
-    const std::vector<std::uint32_t> pixels =
-        silhouette_pixels(view, frame.buffers, scene, surface_options.spacing, edges_of_solids ? &*behind : nullptr);
+    const std::vector<std::uint32_t> pixels = with_wide_pixels(
+        silhouette_pixels(view, frame.buffers, scene, surface_options.spacing, edges_of_solids ? &*behind : nullptr),
+        *surface, view, frame.buffers);
     refine_pixels(*surface, view, scene, settings.material, optics, pixels, frame.buffers, frame.radiance,
                   water.in_slabs ? std::max(kPixelsAtOnce, frame.radiance.size() / 16) : kPixelsAtOnce);
   }

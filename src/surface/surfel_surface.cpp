@@ -63,7 +63,8 @@ class SurfelSurface final : public Surface {
     if (points.empty()) return {};
     if (view.projection == Projection::cube) return see_cube(view, points, times);
     SurfaceBuffers fine = splatted(view, points, times);
-    if (options_.filter_radius > 0) take_filtered_normals(view, coarse, points, filter_tolerance(), fine);
+    if (options_.filter_radius > 0 && !coarse.normal.empty())
+      take_filtered_normals(view, coarse, points, filter_tolerance(), fine);
     add_colours(view, points, fine, times);
     if (!coarse.thickness.empty()) fine.thickness = sampled_picture(coarse.thickness, points);
     return fine;

@@ -17,23 +17,16 @@ RaycastField field_of(const Particles& particles, Keep keep = Keep::band) {
 }
 
 /// The density by one sum over all particles, in double precision.
-double density_at(const Particles& particles, const std::vector<float>& masses, vec3 point) {
+double density_at(const RaycastField& all, vec3 point) {
   const double h = 2.0 * kSpacing;
   double sum = 0;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const double q = glm::length(glm::dvec3(particles.position(i)) - glm::dvec3(point)) / h;
+  for (std::size_t i = 0; i < all.grid.size(); ++i) {
+    const double q = glm::length(glm::dvec3(all.grid.position(i)) - glm::dvec3(point)) / h;
     if (q >= 1) continue;
     const double w = q < 0.5 ? 1 - 6 * q * q + 6 * q * q * q : 2 * (1 - q) * (1 - q) * (1 - q);
-    sum += static_cast<double>(masses[i]) / std::numbers::pi * w;  // spacing^3 8 / h^3 = 1
+    sum += static_cast<double>(all.mass[i]) / std::numbers::pi * w;  // spacing^3 8 / h^3 = 1
   }
   return sum;
-}
-
-std::vector<float> masses_of(const Particles& particles) {
-  const RaycastField all = field_of(particles, Keep::all);
-  std::vector<float> masses(particles.size());
-  for (std::size_t i = 0; i < masses.size(); ++i) masses[all.grid.given_index(i)] = all.mass[i];
-  return masses;
 }
 
 /// A tank, deep enough to have particles that are left out, and drops up to 40 of its widths away.
@@ -46,7 +39,7 @@ Particles tank_in_spray() {
 
 TEST(MarchCells, TellWaterFromAirAsTheParticlesDo) {
   const Particles particles = tank_in_spray();
-  const std::vector<float> masses = masses_of(particles);
+  const RaycastField all = field_of(particles, Keep::all);
   const RaycastField field = field_of(particles);
   ASSERT_TRUE(field.grid.has_deep());
   const MarchCells cells(field);
@@ -57,7 +50,7 @@ TEST(MarchCells, TellWaterFromAirAsTheParticlesDo) {
     const vec3 point = i % 4 == 0 ? particles.position(random.bits() % particles.size()) + kSpacing * random.in_cube(3)
                                   : kSpacing * random.in_cube(20);
     const Kind kind = cells.at(point);
-    const double density = density_at(particles, masses, point);
+    const double density = density_at(all, point);
     inside += kind == Kind::inside;
     outside += kind == Kind::outside;
     if (kind == Kind::inside) {
@@ -188,8 +181,8 @@ TEST(MarchCells, OfATankDoNotChangeInACloudOfSpray) {
   for (int i = 0; i < 2000; ++i) rays.push_back({kSpacing * random.in_cube(9), random.direction()});
   const std::vector<float> from(rays.size(), 0.0f), limit(rays.size(), 40 * kSpacing);
   std::vector<std::uint8_t> inside(rays.size());
-  const std::vector<float> masses = masses_of(alone);
-  for (std::size_t i = 0; i < rays.size(); ++i) inside[i] = density_at(alone, masses, rays[i].origin) >= 0.5;
+  const RaycastField all = field_of(alone, Keep::all);
+  for (std::size_t i = 0; i < rays.size(); ++i) inside[i] = density_at(all, rays[i].origin) >= 0.5;
   std::vector<Crossing> a(rays.size()), b(rays.size()), again(rays.size());
   one->crossings(rays, from, limit, inside, a);
   other->crossings(rays, from, limit, inside, b);
