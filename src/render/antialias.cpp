@@ -24,6 +24,8 @@ struct Enough {
   float apart;
 };
 constexpr Enough kEnough[] = {{4, 0.05f}, {8, 0.4f}, {kRays, 1}};
+/// All of them, in steps all the same: how broad glitter is follows from one ray of each pixel that is drawn with the
+/// others, and is steadier as the mean of three.
 constexpr Enough kAll[] = {{4, -1}, {8, -1}, {kRays, 1}};
 
 /// Spacings from which on pixels are wide: their rays are no closer than the surface's own detail.
