@@ -1,5 +1,7 @@
 #include "surface/depth_tile.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -18,15 +20,16 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = HWY_CAPPED(float, 16);
 using Vec = hn::Vec<Tag>;
 using Mask = hn::Mask<Tag>;
+using Places = hn::Vec<hn::RebindToSigned<Tag>>;
 using RowTag = HWY_CAPPED(float, DepthTile::kQuads);
 
 constexpr int kLanes = 16;
+constexpr std::size_t kAhead = 4;  ///< runs that are asked of memory before they are drawn
 
 /// Sixteen spheres in camera space and the pixels of the tile, both ends included, that each may cover.
 struct Candidates {
   alignas(64) float x[kLanes], y[kLanes], z[kLanes], radius[kLanes];
   alignas(64) float near[kLanes];  ///< m: no ray enters the sphere before
-  alignas(64) float far[kLanes];   ///< m: no ray leaves it behind
   alignas(64) std::int32_t x0[kLanes], x1[kLanes], y0[kLanes], y1[kLanes];
 };
 
@@ -67,15 +70,23 @@ class SpheresInTile {
       if (may_be_seen(run))
         runs.push_back(run);
       else
-        leave_out(run);
+        take_exit(run);
     }
+  }
+
+  /// Asks for the run's spheres, which lie anywhere.
+  static HWY_INLINE void fetch(const TileRun& run) {
+    const Spheres& spheres = *run.spheres;
+    for (const std::span<const float>& values : {spheres.x, spheres.y, spheres.z, spheres.radius})
+      if (values.size() > 1) hwy::Prefetch(values.data() + run.begin);
   }
 
   void draw(const TileRun& run) {
     if (!may_be_seen(run)) {
-      leave_out(run);
+      take_exit(run);
       return;
     }
+    take_exit(run);
     const std::size_t lanes = hn::Lanes(Tag()), end = std::size_t{run.begin} + run.count;
     for (std::size_t at = run.begin; at < end; at += lanes) {
       std::uint32_t spheres = candidates(at, std::min(end - at, lanes));
@@ -180,16 +191,17 @@ class SpheresInTile {
     return false;
   }
 
-  /// No exit of the quads that the run touches is to be nearer than its far side.
-  HWY_INLINE void leave_out(const TileRun& run) {
+  /// No exit of the quads that the run touches is to be nearer than its far
+  /// side.
+  HWY_INLINE void take_exit(const TileRun& run) {
     const RowTag d;
     const auto far = hn::Set(d, run.far);
     for (int part = 0; part < DepthTile::kQuads; part += static_cast<int>(hn::Lanes(d))) {
       const auto columns = columns_of(run, part);
       for (int qy = run.y0; qy <= run.y1; ++qy) {
-        float* least = tile_.least + qy * DepthTile::kQuads + part;
-        const auto before = hn::Load(d, least);
-        hn::Store(hn::IfThenElse(columns, hn::Max(before, far), before), d, least);
+        float* exit = tile_.exit + qy * DepthTile::kQuads + part;
+        const auto before = hn::Load(d, exit);
+        hn::Store(hn::IfThenElse(columns, hn::Max(before, far), before), d, exit);
       }
     }
   }
@@ -246,36 +258,54 @@ class SpheresInTile {
     const Vec cx = along(camera_.right), cy = along(camera_.up), cz = along(camera_.forward);
     Mask good = hn::And(hn::And(hn::Gt(hn::Add(cz, radius), zero), hn::Gt(radius, zero)), hn::FirstN(d, count));
     Ends u, v;
-    Vec near, far;
+    Vec near;
     if (camera_.perspective) {
       const Vec z2 = hn::Mul(cz, cz), denominator = hn::NegMulAdd(radius, radius, z2);
       const Vec distance = hn::Sqrt(hn::MulAdd(cx, cx, hn::MulAdd(cy, cy, z2)));
       near = hn::Sub(distance, radius);
-      far = hn::Add(distance, radius);
       const Mask around = hn::Or(hn::Le(cz, radius), hn::Le(denominator, hn::Mul(hn::Set(d, 1e-12f), z2)));
       const Vec per_denominator = hn::Div(hn::Set(d, 1.0f), denominator);
       u = tangents(cx, cz, radius, denominator, per_denominator, around);
       v = tangents(cy, cz, radius, denominator, per_denominator, around);
     } else {
       near = hn::Sub(cz, radius);
-      far = hn::Add(cz, radius);
       u = {hn::Sub(cx, radius), hn::Add(cx, radius)};
       v = {hn::Sub(cy, radius), hn::Add(cy, radius)};
     }
     const Pixels pixels = pixels_between(u, v);
     good = hn::And(good, pixels.some);
     if (hn::AllFalse(d, good)) return 0;
+    const hn::Vec<decltype(di)> x0 = hn::ConvertTo(di, pixels.x0), x1 = hn::ConvertTo(di, pixels.x1),
+                                y0 = hn::ConvertTo(di, pixels.y0), y1 = hn::ConvertTo(di, pixels.y1);
+    good = may_change(good, near, x0, x1, y0, y1);
     hn::Store(cx, d, found_.x);
     hn::Store(cy, d, found_.y);
     hn::Store(cz, d, found_.z);
     hn::Store(radius, d, found_.radius);
     hn::Store(near, d, found_.near);
-    hn::Store(far, d, found_.far);
-    hn::Store(hn::ConvertTo(di, pixels.x0), di, found_.x0);
-    hn::Store(hn::ConvertTo(di, pixels.x1), di, found_.x1);
-    hn::Store(hn::ConvertTo(di, pixels.y0), di, found_.y0);
-    hn::Store(hn::ConvertTo(di, pixels.y1), di, found_.y1);
+    hn::Store(x0, di, found_.x0);
+    hn::Store(x1, di, found_.x1);
+    hn::Store(y0, di, found_.y0);
+    hn::Store(y1, di, found_.y1);
     return bits_of(good);
+  }
+
+  /// Of `good` those that begin before the largest entry of one of the blocks
+  /// that they touch; all that touch more than two blocks in a row or a column.
+  HWY_INLINE Mask may_change(Mask good, Vec near, Places x0, Places x1, Places y0, Places y1) const {
+    const Tag d;
+    const hn::RebindToSigned<Tag> di;
+    const Places first_x = hn::ShiftRight<2>(x0), last_x = hn::ShiftRight<2>(x1);
+    const Places first_row = hn::ShiftLeft<4>(hn::ShiftRight<2>(y0)),
+                 last_row = hn::ShiftLeft<4>(hn::ShiftRight<2>(y1));
+    const auto full = [&](Places row, Places column) {
+      return hn::GatherIndex(d, tile_.full_block, hn::Add(row, column));
+    };
+    const Vec farthest = hn::Max(hn::Max(full(first_row, first_x), full(first_row, last_x)),
+                                 hn::Max(full(last_row, first_x), full(last_row, last_x)));
+    const auto wide = hn::Or(hn::Gt(hn::Sub(last_x, first_x), hn::Set(di, 1)),
+                             hn::Gt(hn::Sub(last_row, first_row), hn::Set(di, DepthTile::kBlocks)));
+    return hn::And(good, hn::Or(hn::RebindMask(d, wide), hn::Le(near, farthest)));
   }
 
   /// Draws one candidate into the blocks where it may change something.
@@ -284,15 +314,13 @@ class SpheresInTile {
     const int lanes = static_cast<int>(hn::Lanes(d));
     const int bx0 = found_.x0[l] / DepthTile::kBlock, bx1 = found_.x1[l] / DepthTile::kBlock;
     const int by0 = found_.y0[l] / DepthTile::kBlock, by1 = found_.y1[l] / DepthTile::kBlock;
-    const Vec near = hn::Set(d, found_.near[l]), far = hn::Set(d, found_.far[l]);
+    const Vec near = hn::Set(d, found_.near[l]);
     for (int part = bx0 / lanes * lanes; part <= bx1; part += lanes) {
       const Vec place = hn::Iota(d, static_cast<float>(part));
       const Mask columns = hn::And(hn::Ge(place, hn::Set(d, static_cast<float>(bx0))),
                                    hn::Le(place, hn::Set(d, static_cast<float>(bx1))));
       for (int by = by0; by <= by1; ++by) {
         const int row = by * DepthTile::kBlocks + part;
-        const Vec exit = hn::Load(d, tile_.exit + row);
-        hn::Store(hn::IfThenElse(columns, hn::Max(exit, far), exit), d, tile_.exit + row);
         std::uint32_t blocks = bits_of(hn::And(columns, hn::Ge(hn::Load(d, tile_.full_block + row), near)));
         for (; blocks != 0; blocks &= blocks - 1) {
           const int bx = part + __builtin_ctz(blocks);
@@ -407,7 +435,10 @@ void DrawRuns(const SplatCamera& camera, std::span<const TileRun> runs, DepthTil
   for (std::size_t begin = 0; begin < runs.size();) {
     SpheresInTile drawing(camera, *runs[begin].spheres, tile);
     const Spheres* spheres = runs[begin].spheres;
-    for (; begin < runs.size() && runs[begin].spheres == spheres; ++begin) drawing.draw(runs[begin]);
+    for (; begin < runs.size() && runs[begin].spheres == spheres; ++begin) {
+      if (begin + kAhead < runs.size()) SpheresInTile::fetch(runs[begin + kAhead]);
+      drawing.draw(runs[begin]);
+    }
     drawing.find_farthest();
   }
 }
@@ -435,8 +466,7 @@ void start_depth_tile(const SplatCamera& camera, int x, int y, DepthTile& tile) 
     for (int x_quad = 0; x_quad * DepthTile::kQuad < tile.width; ++x_quad)
       tile.full[y_quad * DepthTile::kQuads + x_quad] = kInfinity;
   std::fill_n(tile.full_block, DepthTile::kBlocks * DepthTile::kBlocks, kInfinity);
-  std::fill_n(tile.least, DepthTile::kQuads * DepthTile::kQuads, -kInfinity);
-  std::fill_n(tile.exit, DepthTile::kBlocks * DepthTile::kBlocks, -kInfinity);
+  std::fill_n(tile.exit, DepthTile::kQuads * DepthTile::kQuads, -kInfinity);
   HWY_DYNAMIC_DISPATCH(StartDepthTile)(camera, tile);
 }
 
@@ -456,8 +486,7 @@ void copy_depth_tile(const DepthTile& tile, int x, int y, Image<float>& entry, I
     for (int i = 0; i < tile.width; i += kBlock) {
       const int block = j / kBlock * DepthTile::kBlocks + i / kBlock;
       const float* from = tile.entry + block * kBlock * kBlock + j % kBlock * kBlock;
-      const float last =
-          std::max(tile.exit[block], tile.least[j / DepthTile::kQuad * DepthTile::kQuads + i / DepthTile::kQuad]);
+      const float last = tile.exit[j / DepthTile::kQuad * DepthTile::kQuads + i / DepthTile::kQuad];
       float* to_entry = entry.row(y + j) + x + i;
       float* to_exit = exit.row(y + j) + x + i;
       const int count = std::min(kBlock, tile.width - i);

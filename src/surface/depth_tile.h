@@ -21,14 +21,15 @@ struct DepthTile {
   alignas(64) float inverse_length[kSide * kSide];  ///< perspective: 1 / |(u, v, 1)|
   alignas(64) float lane_u[kBlock * kBlock];        ///< of the pixels of a block, from its first one on
   alignas(64) float lane_v[kBlock * kBlock];
-  alignas(
-      64) float full[kQuads * kQuads];  ///< largest entry in the quad: what begins behind it is not seen there first
-  alignas(64) float least[kQuads * kQuads];         ///< largest exit of the runs that were not drawn in the quad
+  alignas(64) float full[kQuads * kQuads];          ///< largest entry in the quad: what begins
+                                                    ///< behind it is not seen there first
+  alignas(64) float exit[kQuads * kQuads];          ///< m: no ray of the quad leaves one
+                                                    ///< of the runs there behind
   alignas(64) float full_block[kBlocks * kBlocks];  ///< the same in the block
-  alignas(64) float exit[kBlocks * kBlocks];  ///< largest exit of the spheres in the block, of runs that were drawn
-  float farthest;                             ///< entry in the tile
-  float u0, v0;                               ///< of the tile's first pixel
-  int width, height;                          ///< of its pixels that lie in the picture; others count as covered
+  float farthest;                                   ///< entry in the tile
+  float u0, v0;                                     ///< of the tile's first pixel
+  int width, height;                                ///< of its pixels that lie in the picture; others count as
+                                                    ///< covered
 };
 
 /// Empties the tile; x, y: its first pixel.

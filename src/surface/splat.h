@@ -44,10 +44,11 @@ struct GroupedSpheres {
   const SphereGroups* groups;
 };
 
-/// For every pixel centre the least distance at which its ray enters a sphere of any of the sets (0 if it starts inside
-/// of one) and a distance behind which it leaves none; +infinity and -infinity where it meets none. Entries are exact,
-/// exits may be too far: they hold for blocks of 4 x 4 pixels, and where spheres are behind what covers a part of the
-/// picture whole, those are not drawn and the far side of their boxes is taken.
+/// For every pixel centre the least distance at which its ray enters a sphere
+/// of any of the sets (0 if it starts inside of one) and a distance behind
+/// which it leaves none; +infinity and -infinity where it meets none. Entries
+/// are exact, exits may be too far: they are those of the boxes of runs, and
+/// hold for squares of 8 x 8 pixels.
 void splat_entries(const View& view, std::span<const GroupedSpheres> sets, Image<float>& entry, Image<float>& exit);
 
 /// For every `stride`-th pixel in both directions (at the centre of each block of stride x stride pixels) the

@@ -115,7 +115,7 @@ void draw_tile(const SplatCamera& camera, std::span<const ListedCluster> list, c
     if (seen(order[begin]).near > tile.farthest) {
       float far = 0;
       for (; begin < order.size(); ++begin) far = std::max(far, seen(order[begin]).far);
-      for (float& least : tile.least) least = std::max(least, far);
+      for (float& exit : tile.exit) exit = std::max(exit, far);
       break;
     }
     const std::size_t end = std::min(begin + kAtOnce, order.size());
