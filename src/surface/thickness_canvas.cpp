@@ -21,7 +21,8 @@ void points(const SplatCamera& camera, const float* x, const float* y, const flo
   const hn::RebindToSigned<Tag> di;
   const std::size_t lanes = hn::Lanes(d);
   alignas(64) std::int32_t at[16];
-  alignas(64) float v00[16], v01[16], v10[16], v11[16];
+  alignas(64) float upper_pairs[32], lower_pairs[32];
+  const HWY_CAPPED(float, 2) pair;
   const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const Vec per_du = hn::Set(d, 1.0f / camera.du), per_dv = hn::Set(d, 1.0f / camera.dv);
   const Vec per_area = hn::Set(d, 1.0f / (camera.du * camera.du));
@@ -62,19 +63,17 @@ void points(const SplatCamera& camera, const float* x, const float* y, const flo
     const Vec fx = hn::Sub(px, ix), fy = hn::Sub(py, iy);
     const Vec lower = hn::Mul(water, fy), upper = hn::Sub(water, lower);
     const Vec upper_right = hn::Mul(upper, fx), lower_right = hn::Mul(lower, fx);
-    hn::Store(hn::Sub(upper, upper_right), d, v00);
-    hn::Store(upper_right, d, v01);
-    hn::Store(hn::Sub(lower, lower_right), d, v10);
-    hn::Store(lower_right, d, v11);
+    hn::StoreInterleaved2(hn::Sub(upper, upper_right), upper_right, d, upper_pairs);
+    hn::StoreInterleaved2(hn::Sub(lower, lower_right), lower_right, d, lower_pairs);
     const auto column = hn::ConvertTo(di, hn::IfThenElseZero(within, hn::Add(ix, one)));
     const auto row = hn::ConvertTo(di, hn::IfThenElseZero(within, hn::Add(iy, one)));
     hn::Store(hn::Add(hn::Mul(row, hn::Set(di, canvas.pitch)), column), di, at);
     for (std::size_t l = 0; l < here; ++l) {
-      float* to = values + at[l];
-      to[0] += v00[l];
-      to[1] += v01[l];
-      to[canvas.pitch] += v10[l];
-      to[canvas.pitch + 1] += v11[l];
+      const auto add = [&](float* to, const float* more) {
+        hn::StoreU(hn::Add(hn::LoadU(pair, to), hn::Load(pair, more)), pair, to);
+      };
+      add(values + at[l], upper_pairs + 2 * l);
+      add(values + at[l] + canvas.pitch, lower_pairs + 2 * l);
     }
   }
 }

@@ -1,6 +1,8 @@
 #include "surface/thickness_water.h"
 
+#include <cstring>
 #include <glm/geometric.hpp>
+#include <numeric>
 
 #include "particles/band_kinds.h"
 #include "surface/thickness_canvas.h"
@@ -17,7 +19,24 @@ constexpr std::size_t kAllParticles = 1 << 20;
 constexpr std::size_t kMostPieces = 16;
 constexpr double kPieceCost = 20000, kBlockCost = 100;  ///< in particles
 
-/// By block, the cells amidst well filled ones: their particles need not be known one by one.
+/// The cells that are deep, or hidden or deep, from their kinds: those of a row
+/// of eight at once.
+BandBits bits_of_kinds(const BandGrid::Kind* kinds, bool deep_only) {
+  static_assert(BandGrid::hidden == 1 && BandGrid::deep == 2 && sizeof(BandGrid::Kind) == 1);
+  constexpr std::uint64_t kOnes = 0x0101010101010101u;
+  BandBits bits{};
+  for (std::size_t row = 0; row < 64; ++row) {
+    std::uint64_t eight;
+    std::memcpy(&eight, kinds + 8 * row, 8);
+    const std::uint64_t set = (deep_only ? eight >> 1 : eight >> 1 | eight) & kOnes;
+    // Byte i of zero or one goes to bit 56 + i.
+    bits[row / 8] |= set * 0x0102040810204080u >> 56 << 8 * (row % 8);
+  }
+  return bits;
+}
+
+/// By block, the cells amidst well filled ones: their particles need not be
+/// known one by one.
 std::vector<BandBits> amidst_water(const BandGrid& grid, float spacing) {
   const auto blocks = static_cast<std::size_t>(grid.blocks());
   std::vector<BandBits> bits(blocks, BandBits{});
@@ -31,14 +50,12 @@ std::vector<BandBits> amidst_water(const BandGrid& grid, float spacing) {
       const int block = static_cast<int>(b);
       bits[b] = {};
       if (known && grid.all_open(block)) continue;
-      const BandGrid::Kind* kinds = grid.kinds(block);
       const std::uint32_t* counts = grid.counts(block);
-      for (std::size_t c = 0; c < BandGrid::kCells; ++c) {
-        const bool set = !known ? counts[c] >= well_filled
-                         : few  ? kinds[c] == BandGrid::deep
-                                : kinds[c] != BandGrid::open;
-        bits[b][c / 64] |= static_cast<std::uint64_t>(set) << c % 64;
-      }
+      if (known)
+        bits[b] = bits_of_kinds(grid.kinds(block), few);
+      else
+        for (std::size_t c = 0; c < BandGrid::kCells; ++c)
+          bits[b][c / 64] |= static_cast<std::uint64_t>(counts[c] >= well_filled) << c % 64;
       if (known) continue;
       const glm::ivec3 at = grid.corner(block) / BandGrid::kSide;
       sides[b] = {grid.find(at.x - 1, at.y, at.z), grid.find(at.x + 1, at.y, at.z), grid.find(at.x, at.y - 1, at.z),
@@ -65,7 +82,10 @@ std::vector<float> mean_counts(const BandGrid& grid, const std::vector<BandBits>
       for (std::size_t slice = 0; slice < amidst[b].size(); ++slice) {
         const std::uint32_t* counts = grid.counts(static_cast<int>(b)) + slice * 64;
         std::uint64_t sum = 0;
-        for (std::uint64_t word = amidst[b][slice]; word != 0; word &= word - 1) sum += counts[__builtin_ctzll(word)];
+        if (amidst[b][slice] == ~std::uint64_t{0})
+          sum = std::accumulate(counts, counts + 64, std::uint64_t{0});
+        else
+          for (std::uint64_t word = amidst[b][slice]; word != 0; word &= word - 1) sum += counts[__builtin_ctzll(word)];
         own[b].particles += static_cast<double>(sum);
         own[b].cells += __builtin_popcountll(amidst[b][slice]);
       }
