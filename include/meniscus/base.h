@@ -183,12 +183,13 @@ struct Attribute {
 
 /// The particles of one frame: structure of arrays, SI units.
 struct Particles {
-  std::vector<float> x, y, z;          ///< m; all finite
+  std::vector<float> x, y, z;          ///< m, from `origin`; all finite
   std::vector<Attribute> attributes;   ///< each as long as x times its components
   std::optional<double> time;          ///< s, if the file tells
   std::optional<Axis> up;              ///< if the file tells
   std::optional<float> spacing;        ///< m, if the file tells
-  std::string format;                  ///< "bgeo", "xyz", "vtk", "ply", "hdf5"
+  glm::dvec3 origin{0.0};              ///< m, in the file's own coordinates; not zero only far from their origin
+  std::string format;                  ///< "bgeo", "xyz", "vtk", "ply", "hdf5" ...: as docs/formats.md lists them
   std::size_t dropped_non_finite = 0;  ///< particles that the reader left out: NaN or infinite positions
   std::vector<std::string> notes;      ///< what a user should be told about the reading
 

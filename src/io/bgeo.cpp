@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "io/frame_head.h"
+#include "io/positions.h"
 #include "io/readers.h"
-#include "io/values.h"
 
 namespace meniscus::io {
 namespace {
@@ -112,7 +112,7 @@ std::optional<Header> header_of(const Source& source) {
   return header;
 }
 
-Particles points_of(const Source& source, const Header& header) {
+Particles points_of(const Source& source, const Header& header, const ReadOptions& options) {
   source.require(header.first_point, header.points, header.stride, "points");
   const auto count = static_cast<std::size_t>(header.points);
   const auto stride = static_cast<std::size_t>(header.stride);
@@ -124,9 +124,9 @@ Particles points_of(const Source& source, const Header& header) {
 
   Particles particles;
   particles.format = "bgeo";
-  column(Scalar::float32, 0, 1, particles.x);
-  column(Scalar::float32, 1, 1, particles.y);
-  column(Scalar::float32, 2, 1, particles.z);
+  set_positions(Scalar::float32, std::endian::big,
+                {Column{first, stride}, {first + kWord, stride}, {first + 2 * kWord, stride}}, count, options,
+                particles);
   std::size_t word = 4;  // the fourth is the homogeneous w, 1
   std::vector<std::string> texts;
   for (const PointAttribute& description : header.attributes) {
@@ -171,13 +171,13 @@ void look_at_bgeo(const Source& start, FrameHead& head) {
   head.values = static_cast<double>(values);
 }
 
-Particles read_bgeo(const Source& source) {
+Particles read_bgeo(const Source& source, const ReadOptions& options) {
   const std::optional<Header> header = header_of(source);
   if (!header) short_header(source);
-  return points_of(source, *header);
+  return points_of(source, *header, options);
 }
 
-Particles read_bgeo(const std::string& path, Gunzip& stream) {
+Particles read_bgeo(const std::string& path, Gunzip& stream, const ReadOptions& options) {
   // Decompress until the header is whole, then as much as its points take.
   std::uint64_t size = 1 << 12;
   std::optional<Header> header;
@@ -192,7 +192,7 @@ Particles read_bgeo(const std::string& path, Gunzip& stream) {
   const Source source{path, stream.bytes()};
   source.require(header->first_point, header->points, header->stride, "points");
   stream.check_rest();
-  return points_of(source, *header);
+  return points_of(source, *header, options);
 }
 
 }  // namespace meniscus::io

@@ -189,7 +189,7 @@ void append(FrameSequence& sequence, FrameSequence more) {
 
 }  // namespace
 
-FrameSequence find_frames(std::span<const std::string> arguments) {
+FrameSequence find_frames(std::span<const std::string> arguments, const ReadOptions& options) {
   if (arguments.empty()) throw Error(ErrorCode::not_found, "no frames are named");
   FrameSequence sequence;
   std::vector<std::string> files;  // named one after the other
@@ -215,6 +215,7 @@ FrameSequence find_frames(std::span<const std::string> arguments) {
     }
   }
   flush();
+  sequence.reading = options;
   return sequence;
 }
 

@@ -44,7 +44,7 @@ void drop_non_finite(Particles& particles) {
 
 }  // namespace
 
-void finish(Particles& particles) {
+void finish(const ReadOptions& /*options*/, Particles& particles) {
   unify_names(particles.attributes);
   drop_non_finite(particles);
 }

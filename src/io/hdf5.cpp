@@ -129,7 +129,8 @@ void look_at_hdf5(const std::string& path, FrameHead& head) {
   if (water.count > 0) head.values = static_cast<double>(values) / static_cast<double>(water.count);
 }
 
-Particles read_hdf5(const std::string& path) {
+Particles read_hdf5(const Source& start, const ReadOptions& /*options*/) {
+  const std::string& path = start.path;
   const std::lock_guard lock(hdf5_mutex());
   const QuietHdf5 quiet;
   const Hdf5Group file = Hdf5Group::open_file(path);

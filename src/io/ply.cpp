@@ -190,6 +190,8 @@ class PlyReader {
 
 }  // namespace
 
-Particles read_ply(const Source& source) { return PlyReader(source, read_ply_header(source)).read(); }
+Particles read_ply(const Source& source, const ReadOptions& /*options*/) {
+  return PlyReader(source, read_ply_header(source)).read();
+}
 
 }  // namespace meniscus::io

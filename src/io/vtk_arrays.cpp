@@ -77,23 +77,21 @@ std::vector<float> VtkArrays::read(VtkType type, std::uint64_t tuples, std::uint
   return values;
 }
 
-void VtkArrays::read_points(VtkType type, std::uint64_t count, Particles& particles) {
+void VtkArrays::read_points(VtkType type, std::uint64_t count, const ReadOptions& options, Particles& particles) {
   if (type.kind != VtkType::Kind::number) source_.malformed("the points are not numbers", text_.at());
   checked_size(type, count, 3, "points");
   const auto points = static_cast<std::size_t>(count);
-  const std::array<std::vector<float>*, 3> targets{&particles.x, &particles.y, &particles.z};
-  for (std::vector<float>* target : targets) target->resize(points);
   if (binary_) {
     const std::size_t size = size_of(type.scalar);
     const char* first = source_.bytes.data() + text_.at();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      read_columns(type.scalar, std::endian::big, first + axis * size, 3 * size, points, 1, targets[axis]->data());
-    }
+    set_positions(type.scalar, std::endian::big,
+                  {Column{first, 3 * size}, {first + size, 3 * size}, {first + 2 * size, 3 * size}}, points, options,
+                  particles);
     text_.seek(text_.at() + points * 3 * size);
   } else {
-    for (std::size_t i = 0; i < points; ++i) {
-      for (std::vector<float>* target : targets) (*target)[i] = text_.number("points");
-    }
+    std::vector<double> values(3 * points);
+    for (double& value : values) value = text_.wide_number("points");
+    set_positions(values, options, particles);
   }
 }
 

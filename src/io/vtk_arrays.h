@@ -1,8 +1,8 @@
 /// The arrays of a legacy VTK file, ASCII or binary.
 #pragma once
 
+#include "io/positions.h"
 #include "io/text.h"
-#include "io/values.h"
 
 namespace meniscus::io {
 
@@ -29,8 +29,8 @@ class VtkArrays {
   /// Reads tuples * components values. Text and bits give an empty vector; they are moved over.
   /// @throws Error malformed_file: fewer bytes than the count takes; nothing is allocated then
   std::vector<float> read(VtkType type, std::uint64_t tuples, std::uint64_t components, std::string_view what);
-  /// Reads three-component tuples into three arrays.
-  void read_points(VtkType type, std::uint64_t count, Particles& particles);
+  /// Reads three-component tuples into the positions.
+  void read_points(VtkType type, std::uint64_t count, const ReadOptions& options, Particles& particles);
   /// Moves over an array.
   void skip(VtkType type, std::uint64_t tuples, std::uint64_t components, std::string_view what);
 

@@ -263,7 +263,7 @@ class XyzReader {
 
 }  // namespace
 
-Particles read_xyz(const Source& source) { return XyzReader(source).read(); }
+Particles read_xyz(const Source& source, const ReadOptions& /*options*/) { return XyzReader(source).read(); }
 
 void look_at_xyz(const Source& start, FrameHead& head) { XyzReader(start).look(head); }
 
