@@ -239,6 +239,10 @@ class ThreadLimit {
 /// Threads that parallel_for would use now.
 int thread_count();
 
+/// Makes SIGINT, SIGTERM and SIGHUP remove the temporary files that are open and then end the process as they do by
+/// default. For programs; the library alone leaves signals as they are.
+void remove_temporary_files_when_stopped();
+
 /// Milliseconds by stage, in the order of first use; times of the same name add up.
 class StageTimes {
  public:
