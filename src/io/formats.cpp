@@ -36,6 +36,10 @@ const std::array kFormats{
     Format{"xyz", "text of x y z", {".xyz", ".txt", ".csv", ".dat"}, is_text, read_xyz, look_at_xyz},
 };
 
+const std::vector<Writer> kWriters{
+    // In the order in which messages list them.
+};
+
 /// The name without directories, in lower case and without .gz.
 std::string plain_name(const std::string& path) {
   std::string name = lower(path.substr(path.find_last_of('/') + 1));
@@ -67,7 +71,7 @@ void refuse_known(const Source& source) {
 
 std::span<const Format> formats() { return kFormats; }
 
-std::span<const Writer> writers() { return {}; }
+std::span<const Writer> writers() { return kWriters; }
 
 const Format& format_of(const Source& start) {
   const auto is_marked = [](const Format& format) { return format.recognises && format.recognises != is_text; };
