@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <glm/mat4x4.hpp>
+#include <map>
+#include <set>
 
 #include "meniscus/base.h"
 
@@ -86,5 +88,46 @@ Particles read_frame(const FrameSequence& sequence, const FramePath& frame);
 /// water, and a note on the others.
 /// @throws Error  not_found: an argument that names nothing, a directory without frames
 FrameSequence find_frames(std::span<const std::string> arguments, const ReadOptions& options = {});
+
+/// Frames that a running simulation writes, found one after another as they become whole.
+class FrameFollower {
+ public:
+  struct Options {
+    double settle = 1;     ///< s that a file must not have changed for, before it is taken as whole
+    double patience = 10;  ///< s that a damaged one may take to change, before it counts as damaged
+    double poll = 0.25;    ///< s between two looks at the disk
+    /// s without a new frame after which the sequence has ended; none: it goes on until `stopped`.
+    std::optional<double> end_after;
+    std::function<bool()> stopped;  ///< asked at every look; may be null
+  };
+  /// @param arguments  as of find_frames(); they need not name anything yet
+  FrameFollower(std::vector<std::string> arguments, ReadOptions reading, Options options);
+
+  /// The frames that are there, at least one; waits for it.
+  /// @throws Error  not_found: it has ended before there was one; as find_frames(), but for names that are not there
+  /// yet
+  FrameSequence first();
+  /// Frames that were not given before, in natural order; waits for one. None: it has ended.
+  std::vector<FramePath> further();
+  /// Waits until a file that could not be read has changed and settled again. False: it does not change any more.
+  bool wait_for_change(const FramePath& frame);
+
+ private:
+  struct Seen {
+    std::uintmax_t bytes = 0;
+    std::int64_t changed = 0;  ///< by the file's own clock
+    double since = 0;          ///< s, by ours
+  };
+  double now() const;
+  bool stopped() const { return options_.stopped && options_.stopped(); }
+  bool settled(const std::string& path);
+  std::optional<FrameSequence> look();
+
+  std::vector<std::string> arguments_;
+  ReadOptions reading_;
+  Options options_;
+  std::map<std::string, Seen> seen_;
+  std::set<std::string> given_;
+};
 
 }  // namespace meniscus

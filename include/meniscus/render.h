@@ -199,6 +199,8 @@ struct Survey {
   std::vector<std::string> notes;       ///< what a user should be told: guesses from a part of the frames and the like
   std::vector<std::string> unreadable;  ///< one line for each frame that could not be read
   std::shared_ptr<const Particles> only_frame;  ///< of a sequence of one frame, so that it is read once
+  /// What the positions of all frames are counted from, m: ReadOptions::origin, or what the first frame read chose.
+  std::optional<glm::dvec3> origin;
 };
 
 /// Reads the frames (of a long sequence, some) and finds out what the pictures need to have in common.
@@ -434,7 +436,15 @@ struct SequenceOptions {
   bool strict = false;              ///< stop at the first frame that cannot be drawn
   std::size_t turntable = 0;        ///< pictures of a sequence of one frame; 0: one
   std::vector<std::string> layers;  ///< of EXR files; empty: all
+  /// Asked for further frames once all are drawn; none: the sequence has ended. Null: it ends with its last frame.
+  std::function<std::vector<FramePath>()> further;
+  /// Whether a frame that could not be read may still be being written and is to be read again. Null: it is not.
+  std::function<bool(const FramePath&)> read_again;
 };
+
+/// The numbers of a sequence's pictures: those in the names of its frames if each has one and none has it twice, else
+/// they are counted from 0.
+std::vector<std::int64_t> picture_numbers(const FrameSequence& sequence);
 
 /// Refuses what render_sequence() would refuse, before any work, and makes the output's directory.
 /// @throws Error  invalid_argument: several pictures for one file, an unknown kind of file; io_failed
@@ -555,6 +565,7 @@ struct MadeHeights {
 struct SceneFile {
   std::vector<std::string> frames;  ///< what find_frames() takes, relative to the working directory
   std::optional<std::int64_t> first, last, every;
+  ReadOptions reading;                       ///< of the frames
   std::optional<WavesOptions> waves;         ///< water that is made up, instead of frames
   std::optional<SimulatedWater> simulation;  ///< water that is simulated, instead of frames
   std::optional<MadeHeights> heights;        ///< water that is a height field, instead of frames

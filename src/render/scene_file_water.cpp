@@ -35,6 +35,7 @@ const Section& water_section() {
         "(none)",
         "Files, directories, globs, or patterns with `{}` for the frame number",
         store_frames},
+       {"reading", {an_object(reading_section())}, "{}", "How the files of `frames` are read", nullptr},
        {"waves",
         {an_object(waves_section())},
         "(none)",
