@@ -53,6 +53,12 @@ Show show_of(std::string_view name);
 
 class RainyScene;
 
+/// Foam in files beside those of the water.
+struct FoamOptions {
+  std::vector<std::string> files;  ///< with {} for the frame's number
+  FoamLook look;                   ///< a radius of 0 is 0.3 spacings
+};
+
 /// Attributes that the particles of a ray-cast surface have their sizes from; empty names: they are alike.
 struct SizesBy {
   std::string radius;            ///< m, half of each particle's spacing
@@ -89,6 +95,8 @@ struct FrameSettings {
   int drop_isolated = 0;             ///< leave out particles with fewer neighbours than this; 0: none
   std::shared_ptr<RainyScene> rain;  ///< goes on to `time`; may be null
   double time = 0;                   ///< s of the film, for rain; never less than in the frame before
+  std::vector<vec3> foam;            ///< places of spray, foam and bubbles, m
+  FoamLook foam_look;                ///< a radius of 0 is 0.3 spacings
   /// Bytes that a ray-cast surface may take while it is made and seen, beside the particles: one that would take more
   /// is drawn in slabs, one after another. 0: no limit.
   std::uint64_t surface_memory = 0;
@@ -377,6 +385,7 @@ struct PictureOptions {
   std::optional<float> cloud_cover;  ///< as EnvironmentOptions; default 0, with rain 1
   float sky_scale = 1;               ///< factor of the environment's light, >= 0
   std::optional<RainSettings> rain;
+  FoamOptions foam;
   ToneOptions tone;
   Antialias antialias = Antialias::edges;
   std::uint64_t memory_limit = 0;  ///< bytes that the whole process may hold; 0: no limit. See check_memory()

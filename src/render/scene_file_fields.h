@@ -100,6 +100,7 @@ struct Section {
 const Section& file_section();
 const Section& water_section();
 const Section& reading_section();
+const Section& foam_section();
 const Section& waves_section();
 const Section& simulation_section();
 const Section& pour_section();

@@ -78,6 +78,7 @@ const Section& water_section() {
         "Water that is a made-up height field, instead of frames",
         [](const JsonValue&, Draft& d) { d.scene.heights.emplace(); }},
        {"height_field", {an_object(height_field_section())}, "{}", "How the surface `height_field` is found", nullptr},
+       {"foam", {an_object(foam_section())}, "{}", "Spray, foam and bubbles beside the water", nullptr},
        {"smoothing_length",
         {a_number(above(0))},
         "(2 spacings)",

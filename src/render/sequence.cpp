@@ -7,6 +7,7 @@
 
 #include "meniscus/render.h"
 #include "render/body_placement.h"
+#include "render/foam_frames.h"
 #include "render/frame_memory.h"
 #include "render/rainy_frame.h"
 #include "render/read_ahead.h"
@@ -212,6 +213,13 @@ class SequenceRun {
     const double in_film = static_cast<double>(shot.place) / options_.video.frames_per_second;
     settings_->time = sequence_.foreseen ? particles->time.value_or(in_film) : in_film;
     if (target_.format() == PictureFormat::ply) return particles;
+    if (!picture_.foam.files.empty()) {
+      const StageTimer timer(&report.times, "read");
+      const std::size_t before = report.notes.size();
+      settings_->foam =
+          foam_of_frame(picture_.foam, shot.frame.number.value_or(shot.number), sequence_.reading, report.notes);
+      if (options_.strict && report.notes.size() > before) throw Error(ErrorCode::not_found, report.notes.back());
+    }
     std::vector<std::optional<glm::mat4>> moved;
     if (sequence_.body_transforms) moved = sequence_.body_transforms();
     const std::size_t notes = report.notes.size();
