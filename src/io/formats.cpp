@@ -25,6 +25,9 @@ bool is_vtk(const Source& start) { return start.starts_with("# vtk DataFile"); }
 bool is_ply(const Source& start) { return start.starts_with("ply\n") || start.starts_with("ply\r"); }
 bool is_hdf5(const Source& start) { return start.starts_with({"\x89HDF\r\n\x1a\n", 8}); }
 
+bool is_npy(const Source& start) { return start.starts_with("\x93NUMPY"); }
+bool is_zip(const Source& start) { return start.starts_with("PK\x03\x04") || start.starts_with("PK\x05\x06"); }
+
 void look_at_hdf5_file(const Source& start, FrameHead& head) { look_at_hdf5(start.path, head); }
 
 const std::array kFormats{
@@ -32,6 +35,8 @@ const std::array kFormats{
     Format{"vtk", "legacy VTK", {".vtk"}, is_vtk, read_vtk, look_at_vtk},
     Format{"ply", "PLY", {".ply"}, is_ply, read_ply, look_at_ply},
     Format{"hdf5", "HDF5", {".hdf5", ".h5"}, is_hdf5, read_hdf5, look_at_hdf5_file, true},
+    Format{"npy", "NPY", {".npy"}, is_npy, read_npy, look_at_npy},
+    Format{"npz", "NPZ", {".npz"}, is_zip, read_npz, look_at_npz},
     // Numbers in text have no mark: after all that have one.
     Format{"xyz", "text of x y z", {".xyz", ".txt", ".csv", ".dat"}, is_text, read_xyz, look_at_xyz},
 };
@@ -63,8 +68,6 @@ void refuse_known(const Source& source) {
     source.unsupported("is Houdini geometry, but not classic binary BGEO", "export it as classic BGEO version 5");
   if (source.starts_with("<?xml") || source.starts_with("<VTKFile"))
     source.unsupported("is XML; of VTK's formats the legacy one is read", "export it as legacy .vtk");
-  if (source.starts_with("PK\x03\x04") || source.starts_with("\x93NUMPY"))
-    source.unsupported("is an archive or array of NumPy", "PySPH: write frames as HDF5 (--output-format hdf5)");
 }
 
 }  // namespace
@@ -89,7 +92,7 @@ const Format& format_of(const Source& start) {
     if (is_marked(format) && named(format))
       start.malformed(fmt::format("is named {} but is not {}", format.endings.front(), format.title), 0, {},
                       shown_start(start.bytes));
-  for (const std::string_view extension : {".obj", ".stl", ".abc", ".vdb", ".usd", ".npz", ".bin", ".pdb", ".png"})
+  for (const std::string_view extension : {".obj", ".stl", ".abc", ".vdb", ".usd", ".bin", ".pdb", ".png"})
     if (name.ends_with(extension)) start.unsupported(fmt::format("a {} file holds no particles to read", extension));
   for (const Format& format : kFormats)
     if (format.recognises == is_text && (is_text(start) || name.ends_with(".csv"))) return format;

@@ -8,6 +8,8 @@
 
 namespace meniscus::io {
 
+struct FrameHead;
+
 /// Houdini classic BGEO, version 5, big-endian, as Partio and SPlisHSPlasH write it.
 Particles read_bgeo(const Source& source, const ReadOptions& options);
 /// The same from a gzip stream, decompressing no more than the header asks for.
@@ -20,6 +22,13 @@ Particles read_ply(const Source& source, const ReadOptions& options);
 Particles read_xyz(const Source& source, const ReadOptions& options);
 /// HDF5 with PySPH's layout. Reads the file itself.
 Particles read_hdf5(const Source& start, const ReadOptions& options);
+
+/// NumPy's NPY: an array of N x 3, or a structured one.
+Particles read_npy(const Source& source, const ReadOptions& options);
+/// NumPy's NPZ: a zip archive of such arrays.
+Particles read_npz(const Source& source, const ReadOptions& options);
+void look_at_npy(const Source& start, FrameHead& head);
+void look_at_npz(const Source& start, FrameHead& head);
 
 /// Gives attributes their common names, joins components that stand in arrays of their own, and leaves out
 /// particles whose positions are NaN or infinite, and those that are not asked for.
