@@ -6,6 +6,8 @@
 #include <charconv>
 #include <utility>
 
+#include "io/text_numbers.h"
+
 namespace meniscus::io {
 namespace {
 
@@ -72,9 +74,16 @@ std::vector<float> VtkArrays::read(VtkType type, std::uint64_t tuples, std::uint
     read_columns(type.scalar, std::endian::big, source_.bytes.data() + text_.at(), size, count, 1, values.data());
     text_.seek(text_.at() + count * size);
   } else {
-    text_.numbers(values.data(), count, what);
+    read_text(std::span<float>(values), what);
   }
   return values;
+}
+
+template <class T>
+void VtkArrays::read_text(std::span<T> values, std::string_view what) {
+  const TextNumbers read = read_numbers(source_, text_.at(), source_.bytes.size(), values, what);
+  text_.seek(read.end);
+  if (read.count < values.size()) text_.number(what);  // there is none: an error that says so
 }
 
 void VtkArrays::read_points(VtkType type, std::uint64_t count, const ReadOptions& options, Particles& particles) {
@@ -90,7 +99,7 @@ void VtkArrays::read_points(VtkType type, std::uint64_t count, const ReadOptions
     text_.seek(text_.at() + points * 3 * size);
   } else {
     std::vector<double> values(3 * points);
-    for (double& value : values) value = text_.wide_number("points");
+    read_text(std::span<double>(values), "points");
     set_positions(values, options, particles);
   }
 }

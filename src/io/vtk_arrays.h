@@ -36,6 +36,8 @@ class VtkArrays {
 
  private:
   std::uint64_t checked_size(VtkType type, std::uint64_t tuples, std::uint64_t components, std::string_view what) const;
+  template <class T>
+  void read_text(std::span<T> values, std::string_view what);
   void skip_texts(VtkType type, std::uint64_t values, std::string_view what);
   const Source& source_;
   TextCursor& text_;
