@@ -6,7 +6,11 @@
 #include <array>
 
 #include "io/readers.h"
+#include "io/series_file.h"
 #include "io/text.h"
+#include "io/vtk_xml.h"
+#include "io/vtk_xml_file.h"
+#include "io/vtp_write.h"
 
 namespace meniscus::io {
 namespace {
@@ -21,7 +25,9 @@ bool is_text(const Source& start) {
 }
 
 bool is_bgeo(const Source& start) { return start.starts_with("BgeoV"); }
-bool is_vtk(const Source& start) { return start.starts_with("# vtk DataFile"); }
+bool is_vtk(const Source& start) {
+  return start.starts_with("# vtk DataFile") || start.starts_with("\xef\xbb\xbf# vtk DataFile");
+}
 bool is_ply(const Source& start) { return start.starts_with("ply\n") || start.starts_with("ply\r"); }
 bool is_hdf5(const Source& start) { return start.starts_with({"\x89HDF\r\n\x1a\n", 8}); }
 
@@ -33,6 +39,8 @@ void look_at_hdf5_file(const Source& start, FrameHead& head) { look_at_hdf5(star
 const std::array kFormats{
     Format{"bgeo", "classic BGEO", {".bgeo"}, is_bgeo, read_bgeo, look_at_bgeo},
     Format{"vtk", "legacy VTK", {".vtk"}, is_vtk, read_vtk, look_at_vtk},
+    Format{"vtkxml", "VTK XML", {".vtu", ".vtp", ".pvtu", ".pvtp"}, is_vtk_xml, read_vtk_xml, look_at_vtk_xml},
+    Format{"series", "a list of frames", {".pvd", ".series"}, is_json_series, refuse_series},
     Format{"ply", "PLY", {".ply"}, is_ply, read_ply, look_at_ply},
     Format{"hdf5", "HDF5", {".hdf5", ".h5"}, is_hdf5, read_hdf5, look_at_hdf5_file, true},
     Format{"npy", "NPY", {".npy"}, is_npy, read_npy, look_at_npy},
@@ -43,6 +51,7 @@ const std::array kFormats{
 
 const std::vector<Writer> kWriters{
     // In the order in which messages list them.
+    {".vtp", write_vtp},
 };
 
 /// The name without directories, in lower case and without .gz.
@@ -66,8 +75,8 @@ std::string shown_start(std::span<const char> bytes) {
 void refuse_known(const Source& source) {
   if (source.starts_with("\x7fNSJ") || source.starts_with("[\n") || source.starts_with("PGEOMETRY"))
     source.unsupported("is Houdini geometry, but not classic binary BGEO", "export it as classic BGEO version 5");
-  if (source.starts_with("<?xml") || source.starts_with("<VTKFile"))
-    source.unsupported("is XML; of VTK's formats the legacy one is read", "export it as legacy .vtk");
+  if (source.starts_with("<?xml"))
+    source.unsupported("is XML, but not of VTK", "export it as .vtu, .vtp or legacy .vtk");
 }
 
 }  // namespace
