@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "io/csv_write.h"
+#include "io/raw.h"
 #include "io/readers.h"
 #include "io/series_file.h"
 #include "io/text.h"
@@ -45,6 +47,8 @@ const std::array kFormats{
     Format{"hdf5", "HDF5", {".hdf5", ".h5"}, is_hdf5, read_hdf5, look_at_hdf5_file, true},
     Format{"npy", "NPY", {".npy"}, is_npy, read_npy, look_at_npy},
     Format{"npz", "NPZ", {".npz"}, is_zip, read_npz, look_at_npz},
+    // Numbers without a header: where the options say so, or in an .xyz that is no text.
+    Format{"raw", "raw numbers", {}, is_raw_xyz, read_raw, look_at_raw},
     // Numbers in text have no mark: after all that have one.
     Format{"xyz", "text of x y z", {".xyz", ".txt", ".csv", ".dat"}, is_text, read_xyz, look_at_xyz},
 };
@@ -52,6 +56,7 @@ const std::array kFormats{
 const std::vector<Writer> kWriters{
     // In the order in which messages list them.
     {".vtp", write_vtp},
+    {".csv", write_csv},
 };
 
 /// The name without directories, in lower case and without .gz.
