@@ -6,6 +6,7 @@
 #include <array>
 
 #include "io/csv_write.h"
+#include "io/particle_writers.h"
 #include "io/raw.h"
 #include "io/readers.h"
 #include "io/series_file.h"
@@ -55,6 +56,10 @@ const std::array kFormats{
 
 const std::vector<Writer> kWriters{
     // In the order in which messages list them.
+    {".npz", write_npz},
+    {".ply", write_ply},
+    {".bgeo", write_bgeo},
+    {".bgeo.gz", write_bgeo},
     {".vtp", write_vtp},
     {".csv", write_csv},
 };
@@ -106,7 +111,11 @@ const Format& format_of(const Source& start) {
     if (is_marked(format) && named(format))
       start.malformed(fmt::format("is named {} but is not {}", format.endings.front(), format.title), 0, {},
                       shown_start(start.bytes));
-  for (const std::string_view extension : {".obj", ".stl", ".abc", ".vdb", ".usd", ".bin", ".pdb", ".png"})
+  for (const std::string_view extension : {".pdb", ".pda", ".bin"})
+    if (name.ends_with(extension) && !is_text(start))
+      start.unsupported(fmt::format("is a {} file of Maya or RealFlow, which is not read", extension),
+                        "convert it with Partio: partconvert FILE FILE.bgeo");
+  for (const std::string_view extension : {".obj", ".stl", ".abc", ".vdb", ".usd", ".png"})
     if (name.ends_with(extension)) start.unsupported(fmt::format("a {} file holds no particles to read", extension));
   for (const Format& format : kFormats)
     if (format.recognises == is_text && (is_text(start) || name.ends_with(".csv"))) return format;
