@@ -1,7 +1,10 @@
 #include "io/text_numbers.h"
 
+#include <fast_float/fast_float.h>
+
 #include <algorithm>
 #include <array>
+#include <system_error>
 
 #include "io/text.h"
 
@@ -11,13 +14,36 @@ namespace {
 constexpr std::size_t kChunk = std::size_t{1} << 17;  ///< bytes
 constexpr std::size_t kChunks = 64;                   ///< at once
 
-constexpr std::array<bool, 256> blanks() {
-  std::array<bool, 256> table{};
-  for (const char c : {' ', '\t', '\n', '\r', '\f', '\v'}) table[static_cast<unsigned char>(c)] = true;
-  return table;
+/// Without branches, so that many are looked at in one instruction.
+constexpr std::uint8_t blank(char c) {
+  const auto byte = static_cast<std::uint8_t>(c);
+  return static_cast<std::uint8_t>((byte == ' ') | (static_cast<std::uint8_t>(byte - '\t') < 5));
 }
-constexpr std::array<bool, 256> kBlank = blanks();
-bool blank(char c) { return kBlank[static_cast<unsigned char>(c)]; }
+
+/// How many words begin in [begin, end); begin[-1] can be read.
+std::size_t words_behind(const char* begin, const char* end) {
+  constexpr std::ptrdiff_t kMost = 254;  // that a byte can count
+  std::size_t words = 0;
+  while (begin != end) {
+    const std::ptrdiff_t length = std::min(kMost, end - begin);
+    std::uint8_t some = 0;
+    for (std::ptrdiff_t i = 0; i < length; ++i)
+      some = static_cast<std::uint8_t>(some + (blank(begin[i - 1]) & (blank(begin[i]) ^ 1)));
+    words += some;
+    begin += length;
+  }
+  return words;
+}
+
+/// The number that begins at `at` and ends before a blank or at `last`. Returns its end; null: it is none.
+template <class T>
+const char* parse_at(const char* at, const char* last, T& value) {
+  if (*at == '+') ++at;
+  const auto result = fast_float::from_chars(at, last, value);
+  // Numbers too large or too small for the type come back as infinity and zero, whatever the error code says.
+  const bool good = result.ec == std::errc() || result.ec == std::errc::result_out_of_range;
+  return good && (result.ptr == last || blank(*result.ptr)) ? result.ptr : nullptr;
+}
 
 /// The words that begin in [begin, end) of a text.
 struct Chunk {
@@ -27,14 +53,9 @@ struct Chunk {
   const char* last;  ///< end of the text: a word may reach beyond its chunk
 
   std::size_t count() const {
-    std::size_t words = 0;
-    bool before = begin == first || blank(begin[-1]);
-    for (const char* at = begin; at != end; ++at) {
-      const bool now = blank(*at);
-      words += before && !now ? 1 : 0;
-      before = now;
-    }
-    return words;
+    if (begin == end) return 0;
+    const bool at_first = begin == first;
+    return words_behind(begin + (at_first ? 1 : 0), end) + (at_first && !blank(*begin) ? 1 : 0);
   }
   /// Parses up to `most` words. Returns where it stopped; `bad` is where a word begins that is no number, or null.
   template <class T>
@@ -44,16 +65,14 @@ struct Chunk {
       while (at != end && !blank(*at)) ++at;
     const char* behind = at;
     for (std::size_t i = 0; i < most; ++i) {
-      while (at != end && blank(*at)) ++at;
-      if (at == end) break;
-      const char* word = at;
-      while (at != last && !blank(*at)) ++at;
-      if (!parse_number(std::string_view(word, static_cast<std::size_t>(at - word)), target[i])) {
-        bad = word;
-        return word;
-      }
-      behind = at;
+      while (at < end && blank(*at)) ++at;
       if (at >= end) break;
+      const char* number_end = parse_at(at, last, target[i]);
+      if (number_end == nullptr) {
+        bad = at;
+        return at;
+      }
+      behind = at = number_end;
     }
     return behind;
   }

@@ -97,6 +97,14 @@ void VtkArrays::read_points(VtkType type, std::uint64_t count, const ReadOptions
                   {Column{first, 3 * size}, {first + size, 3 * size}, {first + 2 * size, 3 * size}}, points, options,
                   particles);
     text_.seek(text_.at() + points * 3 * size);
+  } else if (type.scalar == Scalar::float32) {
+    std::vector<float> values(3 * points);
+    read_text(std::span<float>(values), "points");
+    constexpr std::size_t kSize = sizeof(float);
+    const char* first = reinterpret_cast<const char*>(values.data());
+    set_positions(Scalar::float32, std::endian::native,
+                  {Column{first, 3 * kSize}, {first + kSize, 3 * kSize}, {first + 2 * kSize, 3 * kSize}}, points,
+                  options, particles);
   } else {
     std::vector<double> values(3 * points);
     read_text(std::span<double>(values), "points");
