@@ -64,6 +64,8 @@ std::vector<Entry> entries_of_json(const Source& source) {
     json = Json::parse(begin, begin + source.bytes.size(), check_depth, true, true);
   } catch (const Json::parse_error& error) {
     source.malformed("the JSON is damaged", error.byte > 0 ? error.byte - 1 : 0, {}, error.what());
+  } catch (const Json::exception& error) {
+    source.malformed("the JSON holds what cannot be read", 0, {}, error.what());
   }
   const auto files = json.is_object() ? json.find("files") : json.end();
   if (!json.is_object() || files == json.end() || !files->is_array())

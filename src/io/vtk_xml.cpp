@@ -17,7 +17,8 @@ namespace meniscus::io {
 namespace {
 
 constexpr const char* kFormat = "vtkxml";
-constexpr std::uint64_t kMostPieces = 100'000;
+constexpr std::size_t kMostPieces = 100'000;
+constexpr std::size_t kMostArrays = 1024;  ///< of a piece
 
 /// The points of a piece as positions.
 void read_points(const VtkXmlFile& file, const XmlElement& piece, std::uint64_t count, VtkXmlArrays& arrays,
@@ -38,6 +39,9 @@ void read_points(const VtkXmlFile& file, const XmlElement& piece, std::uint64_t 
 
 void read_attributes(const VtkXmlFile& file, const XmlElement& data, std::uint64_t count, VtkXmlArrays& arrays,
                      Particles& particles) {
+  if (data.children.size() > kMostArrays)
+    file.source.malformed("has an impossible number of arrays", data.at, fmt::format("at most {}", kMostArrays),
+                          fmt::format("{}", data.children.size()));
   for (const XmlElement& array : data.children) {
     if (array.name != "DataArray" && array.name != "Array") continue;
     Attribute attribute{array.value("Name"), 1, {}};
@@ -50,9 +54,8 @@ void read_attributes(const VtkXmlFile& file, const XmlElement& data, std::uint64
     const VtkXmlArray values = arrays.read(array, count, components);
     attribute.components = static_cast<int>(components);
     attribute.values.resize(static_cast<std::size_t>(count * components));
-    const std::size_t row = size_of(values.type) * static_cast<std::size_t>(components);
-    read_columns(values.type, values.order, values.bytes.data(), row, static_cast<std::size_t>(count),
-                 static_cast<std::size_t>(components), attribute.values.data());
+    read_columns(values.type, values.order, values.bytes.data(), size_of(values.type), attribute.values.size(), 1,
+                 attribute.values.data());
     particles.attributes.push_back(std::move(attribute));
   }
 }

@@ -115,6 +115,10 @@ VtkXmlArray VtkXmlArrays::read(const XmlElement& array, std::uint64_t tuples, st
                      "'" + format.substr(0, 24) + "'");
   }
   Stream stream(file_, shown_name(array), begin, end, format == "binary" || file_.appended_base64);
+  // Many arrays may name the same bytes; all together they are no more than the file can stand for.
+  const std::uint64_t size = source.bytes.size();
+  made_ += bytes;
+  if (made_ / 2 > (file_.compressor.empty() ? size : believable_size(size))) stream.too_much();
   VtkXmlArray result = file_.compressor.empty() ? read_plain(stream, bytes) : read_compressed(stream, bytes);
   result.type = *type;
   result.order = file_.order;
@@ -163,7 +167,7 @@ VtkXmlArray VtkXmlArrays::read_plain(Stream& stream, std::uint64_t bytes) const 
   return result;
 }
 
-VtkXmlArray VtkXmlArrays::read_compressed(Stream& stream, std::uint64_t bytes) {
+VtkXmlArray VtkXmlArrays::read_compressed(Stream& stream, std::uint64_t bytes) const {
   if (file_.compressor != kZlib)
     file_.source.unsupported(fmt::format("is compressed by {:.40}", file_.compressor),
                              "write it with vtkZLibDataCompressor or without compression");
@@ -190,8 +194,7 @@ VtkXmlArray VtkXmlArrays::read_compressed(Stream& stream, std::uint64_t bytes) {
       stream.malformed("has blocks beyond the end of the file", {}, fmt::format("{} bytes", length));
     begins[i + 1] = begins[i] + length;
   }
-  inflated_ += bytes;
-  if (bytes > believable_size(begins.back() - head) || inflated_ / 2 > believable_size(room)) stream.too_much();
+  if (bytes > believable_size(begins.back() - head)) stream.too_much();
 
   const std::span<const char> packed = stream.first(begins.back());
   result.owned = Bytes(static_cast<std::size_t>(bytes));

@@ -50,10 +50,10 @@ class VtkXmlArrays {
   VtkXmlArray read_text(const XmlElement& array, Scalar type, std::uint64_t values) const;
   class Stream;
   VtkXmlArray read_plain(Stream& stream, std::uint64_t bytes) const;
-  VtkXmlArray read_compressed(Stream& stream, std::uint64_t bytes);
+  VtkXmlArray read_compressed(Stream& stream, std::uint64_t bytes) const;
   std::uint64_t word(const char* first) const;
   const VtkXmlFile& file_;
-  std::uint64_t inflated_ = 0;  ///< bytes so far; a piece may be read twice
+  std::uint64_t made_ = 0;  ///< bytes of binary arrays so far; a piece may be read twice
 };
 
 /// An attribute of an element that is a count.

@@ -136,12 +136,14 @@ TEST(SeriesFile, DamagedIsMalformed) {
     EXPECT_EQ(refused_series(scratch.write("a.pvd", collection(set(time, "a.vtk")))).code(), ErrorCode::malformed_file);
   for (const char* name : {"", "a&#0;b"})
     EXPECT_THROW(found(scratch.write("a.pvd", collection(set("0", name)))), Error);
-  for (const std::string& text : {std::string(), std::string("{"), std::string("[]"), std::string("{\"files\": 7}"),
-                                  std::string("{\"files\": [7]}"), std::string("{\"files\": [{\"name\": 7}]}"),
-                                  std::string("{\"files\": [{\"name\": \"a\", \"time\": \"x\"}]}"),
-                                  std::string("{\"files\": [{\"name\": \"\"}]}"), std::string(100000, '['),
-                                  "{\"files\": " + std::string(100000, '[') + std::string(100000, ']') + "}",
-                                  std::string("{\"files\": [{\"name\": \"a\xff\xfe\"}]}")})
+  for (const std::string& text :
+       {std::string(), std::string("{"), std::string("[]"), std::string("{\"files\": 7}"),
+        std::string("{\"files\": [7]}"), std::string("{\"files\": [{\"name\": 7}]}"),
+        std::string("{\"files\": [{\"name\": \"a\", \"time\": \"x\"}]}"),
+        std::string("{\"files\": [{\"name\": \"\"}]}"),
+        std::string("{\"files\": [{\"name\": \"a\", \"time\": 1e999}]}"), std::string(100000, '['),
+        "{\"files\": " + std::string(100000, '[') + std::string(100000, ']') + "}",
+        std::string("{\"files\": [{\"name\": \"a\xff\xfe\"}]}")})
     EXPECT_EQ(refused_series(scratch.write("a.vtk.series", text)).code(), ErrorCode::malformed_file)
         << text.substr(0, 60);
   const std::string whole = collection(set("0", "a.vtk"));

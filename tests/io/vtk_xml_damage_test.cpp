@@ -115,6 +115,26 @@ TEST(AbsurdCounts, OfPointsInVtkXmlAreRefused) {
   }
 }
 
+TEST(AbsurdCounts, OfArraysThatNameTheSameBytesAreRefused) {
+  const Scratch scratch;
+  const auto bytes_with = [](int arrays) {
+    std::string text =
+        "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"10000\"><Points><DataArray "
+        "type=\"Float32\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points><PointData>";
+    for (int i = 0; i < arrays; ++i)
+      text += fmt::format(
+          "<DataArray type=\"Float32\" Name=\"a{}\" NumberOfComponents=\"3\" format=\"appended\" "
+          "offset=\"0\"/>",
+          i);
+    return text + "</PointData></Piece></PolyData><AppendedData encoding=\"raw\">_" +
+           ByteWriter(std::endian::little).put(std::uint32_t{120'000}).bytes() + std::string(120'000, '\0') +
+           "</AppendedData></VTKFile>";
+  };
+  EXPECT_EQ(read_particles(scratch.write("a.vtp", bytes_with(1))).size(), 10'000u);
+  EXPECT_EQ(refused_within_little(scratch.write("b.vtp", bytes_with(1000))).code(), ErrorCode::limit_exceeded);
+  EXPECT_EQ(refused_within_little(scratch.write("c.vtp", bytes_with(2000))).code(), ErrorCode::malformed_file);
+}
+
 TEST(CompressedBomb, IsRefusedBeforeItIsInflated) {
   // More than a gibibyte in blocks of three mebibytes of zeros: a thousand to one.
   const Scratch scratch;
