@@ -3,7 +3,7 @@ JOBS ?= $(shell nproc)
 BENCH ?= raycast --particles 1000000 --size 1024x1024 --json
 PROGRAM := build/release/meniscus
 
-.PHONY: all build demo test bench bench-peers format packages clean
+.PHONY: all build demo test bench bench-peers fuzz format packages clean
 all: build
 
 build: build/release/build.ninja
@@ -26,6 +26,12 @@ bench-peers: build/release/build.ninja
 	cmake --build --preset release --parallel $(JOBS) --target meniscus_app
 	tools/install_packages.sh bench/peers/packages.txt
 	bench/peers/run.sh $(PROGRAM) build/peers
+
+# Random bytes into every reader, FUZZ_SECONDS each.
+FUZZ_SECONDS ?= 60
+fuzz: | packages
+	tools/install_packages.sh tests/fuzz/packages.txt
+	tools/fuzz.sh $(FUZZ_SECONDS)
 
 # Once configured, ninja itself sees when a CMake file has changed.
 build/release/build.ninja: CMakePresets.json | packages

@@ -16,6 +16,7 @@ void add_bench(CLI::App& program) {
   add_bench_tank(*bench);
   add_bench_splash(*bench);
   add_bench_ground(*bench);
+  add_bench_read(*bench);
 }
 
 }  // namespace meniscus::apps

@@ -37,6 +37,8 @@ void add_bench_simulate(CLI::App& bench);
 void add_bench_tank(CLI::App& bench);
 void add_bench_splash(CLI::App& bench);
 void add_bench_ground(CLI::App& bench);
+void add_bench_read(CLI::App& bench);
 void add_compare(CLI::App& program);
+void add_convert(CLI::App& program);
 
 }  // namespace meniscus::apps

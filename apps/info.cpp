@@ -134,14 +134,19 @@ void print_foreseen(const FrameSequence& sequence, const SceneFile& scene) {
   const double fps = frames_per_second_of(scene);
   const std::size_t frames = sequence.frames.size();
   std::cout << fmt::format("{} {} frames, {:g} a second: {:.3g} s\n", frames,
-                           scene.simulation ? "simulated" : scene.heights ? "made-up" : "rainy", fps, static_cast<double>(frames) / fps);
+                           scene.simulation ? "simulated"
+                           : scene.heights  ? "made-up"
+                                            : "rainy",
+                           fps, static_cast<double>(frames) / fps);
   if (scene.simulation)
     std::cout << fmt::format("  {} particles at the start, spacing {:.4g} m, solver {}\n", foreseen.particles,
                              foreseen.spacing,
                              scene.simulation->simulation.fluid.solver == Solver::sph ? "sph" : "pbf");
   std::cout << fmt::format("  {} from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n",
-                           scene.simulation ? "tank" : scene.heights ? "water" : "ground", box.low.x, box.low.y, box.low.z, box.high.x, box.high.y,
-                           box.high.z);
+                           scene.simulation ? "tank"
+                           : scene.heights  ? "water"
+                                            : "ground",
+                           box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z);
   if (!scene.simulation && !scene.heights) {
     std::cout << fmt::format("  {:g} mm of rain an hour\n", scene.picture.rain->rain.rate_mm_h);
     return;

@@ -58,12 +58,13 @@ void InputOptions::add_to(CLI::App& command) {
       ->type_name("N|FROM:TO:STEP")
       ->group(group);
   command.add_flag("--strict", strict, "Stop at the first frame that cannot be read")->group(group);
+  add_reading_options(command, reading);
 }
 
 FrameSequence InputOptions::find(bool quiet) const {
   for (const std::string& path : what)
     if (is_scene_file(path)) throw UsageError(path + ": frames of particles were expected here, not a scene file");
-  FrameSequence found = find_frames(what);
+  FrameSequence found = find_frames(what, reading);
   if (!quiet)
     for (const std::string& note : found.notes) std::cerr << "meniscus: " << note << '\n';
   return select(std::move(found));
@@ -107,6 +108,17 @@ void InputOptions::take(const SceneFile& scene) {
   every = scene.every;
   if (!spacing) spacing = scene.spacing;
   if (!up) up = scene.up;
+  // What an argument says holds.
+  const ReadOptions standard, own = reading;
+  reading = scene.reading;
+  if (!own.positions.empty()) reading.positions = own.positions;
+  if (!own.columns.empty()) reading.columns = own.columns;
+  if (!own.raw.empty()) reading.raw = own.raw;
+  if (!own.where.empty()) reading.where = own.where;
+  if (own.scale != standard.scale) reading.scale = own.scale;
+  if (own.origin) reading.origin = own.origin;
+  reading.boundaries |= own.boundaries;
+  reading.allow_outside |= own.allow_outside;
 }
 
 SurveyOptions InputOptions::survey_options() const {

@@ -8,6 +8,7 @@
 
 #include "meniscus/render.h"
 #include "parse.h"
+#include "reading_options.h"
 
 namespace meniscus::apps {
 
@@ -18,6 +19,7 @@ struct InputOptions {
   std::optional<float> smoothing_length;  ///< m
   std::optional<Axis> up;
   bool strict = false;
+  ReadOptions reading;
   std::optional<std::int64_t> first_number, last_number, every;  ///< of a scene file
 
   void add_to(CLI::App& command);

@@ -28,7 +28,8 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-bool read(std::string_view text, float& value) {
+template <class Real>
+bool read(std::string_view text, Real& value) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   const auto result = fast_float::from_chars(text.data(), text.data() + text.size(), value);
   return result.ec == std::errc() && result.ptr == text.data() + text.size() && std::isfinite(value);
@@ -96,6 +97,14 @@ PointLight parse_lamp(std::string_view option, std::string_view text) {
 glm::vec3 parse_vec3(std::string_view option, std::string_view text) {
   const auto parts = split(text, ',');
   glm::vec3 v{0};
+  if (parts.size() != 3 || !read(parts[0], v.x) || !read(parts[1], v.y) || !read(parts[2], v.z))
+    refuse(option, text, "three numbers with commas between");
+  return v;
+}
+
+glm::dvec3 parse_dvec3(std::string_view option, std::string_view text) {
+  const auto parts = split(text, ',');
+  glm::dvec3 v{0};
   if (parts.size() != 3 || !read(parts[0], v.x) || !read(parts[1], v.y) || !read(parts[2], v.z))
     refuse(option, text, "three numbers with commas between");
   return v;

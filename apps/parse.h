@@ -20,6 +20,8 @@ struct PictureSize {
 PictureSize parse_size(std::string_view option, std::string_view text);
 /// "1,2.5,-3"
 glm::vec3 parse_vec3(std::string_view option, std::string_view text);
+/// The same in double precision.
+glm::dvec3 parse_dvec3(std::string_view option, std::string_view text);
 /// "30,20"
 glm::vec2 parse_vec2(std::string_view option, std::string_view text);
 /// "0:2.5", rising

@@ -82,6 +82,18 @@ void PictureArguments::add_surface(CLI::App& command) {
         p.drop_isolated = v;
       },
       "Leave out particles with fewer than N others within a smoothing length (default: 0, none)");
+  group.list(
+      "--foam", "FILE", [](PictureOptions& p, const std::string& file) { p.foam.files.push_back(file); },
+      "Particles of spray, foam or bubbles, a file with {} for the frame's number, drawn as soft white discs; may be "
+      "repeated");
+  group.number<float>(
+      "--foam-radius", "METRES",
+      [](PictureOptions& p, float v) { p.foam.look.radius = in_range("--foam-radius", v, 1e-9f, 1e9f); },
+      "Radius of a particle of foam, m (default: 0.3 spacings)");
+  group.number<float>(
+      "--foam-opacity", "FRACTION",
+      [](PictureOptions& p, float v) { p.foam.look.opacity = in_range("--foam-opacity", v, 0.0f, 1.0f); },
+      "Opacity in the middle of a particle of foam, 0 to 1 (default: 0.6)");
 }
 
 void PictureArguments::add_colour(CLI::App& command) {

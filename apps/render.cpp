@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <iostream>
 #include <memory>
 
@@ -27,6 +29,8 @@ struct RenderArguments {
   int threads = 0;
   std::uint64_t memory_limit = 0;  ///< bytes; 0: none
   bool dry_run = false, json = false;
+  bool follow = false;
+  std::optional<double> follow_end;  ///< s
 };
 
 /// "depth,coverage"
@@ -80,6 +84,26 @@ void check_together(const PictureOptions& picture) {
     throw UsageError("--orthographic: virtual eyes (--refraction virtual_eye) need a perspective camera");
 }
 
+/// The first interrupt ends the following: the frame in work is finished, and the film. The second one ends all.
+std::atomic<bool> following_ended{false};
+extern "C" void end_following(int number) {
+  following_ended = true;
+  std::signal(number, SIG_DFL);
+}
+
+FrameFollower follower_of(const RenderArguments& arguments) {
+  if (arguments.input.what.empty()) throw UsageError("--follow: there are no files to follow in this scene");
+  if (arguments.input.selection.first_n || arguments.input.selection.begin || arguments.input.selection.end)
+    throw UsageError("--follow and --frames cannot be meant together");
+  if (arguments.memory_limit > 0 || arguments.dry_run)
+    throw UsageError("--follow: what a run will take is not known beforehand: leave out --memory-limit and --dry-run");
+  FrameFollower::Options options;
+  options.end_after = arguments.follow_end;
+  options.stopped = [] { return following_ended.load(); };
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, end_following);
+  return {arguments.input.what, arguments.input.reading, options};
+}
+
 void render(RenderArguments& arguments) {
   // All that can be wrong with the arguments shows before the work.
   const SceneFile scene = scene_of(arguments);
@@ -95,7 +119,15 @@ void render(RenderArguments& arguments) {
   if (OutputTarget(arguments.sequence.output).format() == PictureFormat::ply &&
       picture.method != SurfaceMethod::surfels)
     throw UsageError("a .ply file holds surfels: add --surface surfels, or write a .png, .exr or .mp4");
-  const FrameSequence sequence = arguments.input.find_in(scene, arguments.quiet);
+  if (arguments.follow_end) arguments.follow = true;
+  std::optional<FrameFollower> follower;
+  if (arguments.follow) follower.emplace(follower_of(arguments));
+  if (follower && !arguments.quiet) std::cerr << "meniscus: waiting for frames; an interrupt ends the film\n";
+  const FrameSequence sequence = follower ? follower->first() : arguments.input.find_in(scene, arguments.quiet);
+  if (follower) {
+    arguments.sequence.further = [&] { return follower->further(); };
+    arguments.sequence.read_again = [&](const FramePath& frame) { return follower->wait_for_change(frame); };
+  }
   arguments.sequence.strict = arguments.input.strict;
   arguments.sequence.turntable = turntable_of(arguments, picture);
   const std::uint64_t made_particles = scene.waves ? scene.waves->particles : 0;
@@ -132,10 +164,12 @@ void render(RenderArguments& arguments) {
   progress.finish();
 
   if (!arguments.report_path.empty()) write_text(arguments.report_path, text_of(json_of(report), 2) + "\n");
-  if (arguments.quiet) return;
-  if (report.drawn > 0) std::cout << timing_table(report);
-  std::cout << fmt::format("{} drawn, {} there already, {} left out: {}\n", report.drawn, report.skipped, report.failed,
-                           arguments.sequence.output);
+  if (!arguments.quiet) {
+    if (report.drawn > 0) std::cout << timing_table(report);
+    std::cout << fmt::format("{} drawn, {} there already, {} left out: {}\n", report.drawn, report.skipped,
+                             report.failed, arguments.sequence.output);
+  }
+  if (report.failed > 0) throw CLI::RuntimeError(kFailed);
 }
 
 void add_output(CLI::App& command, RenderArguments& arguments) {
@@ -155,6 +189,15 @@ void add_output(CLI::App& command, RenderArguments& arguments) {
   command.add_option("--quality", arguments.quality_crf, "Of a film: 0 lossless to 51 worst (default: 18)")
       ->type_name("CRF")
       ->check(CLI::Range(0, 51).description(""))
+      ->group(group);
+  command
+      .add_flag("--follow", arguments.follow,
+                "Draw frames as a running simulation writes them, until interrupted: the film is finished then. The "
+                "camera is fitted to the frames that are there at the start")
+      ->group(group);
+  command.add_option("--follow-end", arguments.follow_end, "The same, until no new frame has come for so long")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 1e9).description(""))
       ->group(group);
   command.add_flag("--resume", sequence.resume, "Leave pictures and films that are there already as they are")
       ->group(group);

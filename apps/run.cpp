@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   add_simulate(program);
   add_bench(program);
   add_compare(program);
+  add_convert(program);
   program.footer(
       "Exit codes: 0 done, 1 the run failed, 2 the arguments cannot be meant.\n"
       "Each command has its own --help.");

@@ -183,12 +183,13 @@ struct Attribute {
 
 /// The particles of one frame: structure of arrays, SI units.
 struct Particles {
-  std::vector<float> x, y, z;          ///< m; all finite
+  std::vector<float> x, y, z;          ///< m, from `origin`; all finite
   std::vector<Attribute> attributes;   ///< each as long as x times its components
   std::optional<double> time;          ///< s, if the file tells
   std::optional<Axis> up;              ///< if the file tells
   std::optional<float> spacing;        ///< m, if the file tells
-  std::string format;                  ///< "bgeo", "xyz", "vtk", "ply", "hdf5"
+  glm::dvec3 origin{0.0};              ///< m, in the file's own coordinates; not zero only far from their origin
+  std::string format;                  ///< "bgeo", "xyz", "vtk", "ply", "hdf5" ...: as docs/formats.md lists them
   std::size_t dropped_non_finite = 0;  ///< particles that the reader left out: NaN or infinite positions
   std::vector<std::string> notes;      ///< what a user should be told about the reading
 
@@ -237,6 +238,10 @@ class ThreadLimit {
 
 /// Threads that parallel_for would use now.
 int thread_count();
+
+/// Makes SIGINT, SIGTERM and SIGHUP remove the temporary files that are open and then end the process as they do by
+/// default. For programs; the library alone leaves signals as they are.
+void remove_temporary_files_when_stopped();
 
 /// Milliseconds by stage, in the order of first use; times of the same name add up.
 class StageTimes {

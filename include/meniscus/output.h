@@ -61,8 +61,4 @@ class VideoWriter {
 /// Writes a text file, whole or not at all. @throws Error io_failed naming the path
 void write_text(const std::string& path, std::string_view text);
 
-/// Makes SIGINT, SIGTERM and SIGHUP remove the temporary files that are open and then end the process as they do by
-/// default. For programs; the library alone leaves signals as they are.
-void remove_temporary_files_when_stopped();
-
 }  // namespace meniscus

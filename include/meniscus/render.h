@@ -53,6 +53,12 @@ Show show_of(std::string_view name);
 
 class RainyScene;
 
+/// Foam in files beside those of the water.
+struct FoamOptions {
+  std::vector<std::string> files;  ///< with {} for the frame's number
+  FoamLook look;                   ///< a radius of 0 is 0.3 spacings
+};
+
 /// Attributes that the particles of a ray-cast surface have their sizes from; empty names: they are alike.
 struct SizesBy {
   std::string radius;            ///< m, half of each particle's spacing
@@ -89,6 +95,8 @@ struct FrameSettings {
   int drop_isolated = 0;             ///< leave out particles with fewer neighbours than this; 0: none
   std::shared_ptr<RainyScene> rain;  ///< goes on to `time`; may be null
   double time = 0;                   ///< s of the film, for rain; never less than in the frame before
+  std::vector<vec3> foam;            ///< places of spray, foam and bubbles, m
+  FoamLook foam_look;                ///< a radius of 0 is 0.3 spacings
   /// Bytes that a ray-cast surface may take while it is made and seen, beside the particles: one that would take more
   /// is drawn in slabs, one after another. 0: no limit.
   std::uint64_t surface_memory = 0;
@@ -199,6 +207,8 @@ struct Survey {
   std::vector<std::string> notes;       ///< what a user should be told: guesses from a part of the frames and the like
   std::vector<std::string> unreadable;  ///< one line for each frame that could not be read
   std::shared_ptr<const Particles> only_frame;  ///< of a sequence of one frame, so that it is read once
+  /// What the positions of all frames are counted from, m: ReadOptions::origin, or what the first frame read chose.
+  std::optional<glm::dvec3> origin;
 };
 
 /// Reads the frames (of a long sequence, some) and finds out what the pictures need to have in common.
@@ -375,6 +385,7 @@ struct PictureOptions {
   std::optional<float> cloud_cover;  ///< as EnvironmentOptions; default 0, with rain 1
   float sky_scale = 1;               ///< factor of the environment's light, >= 0
   std::optional<RainSettings> rain;
+  FoamOptions foam;
   ToneOptions tone;
   Antialias antialias = Antialias::edges;
   std::uint64_t memory_limit = 0;  ///< bytes that the whole process may hold; 0: no limit. See check_memory()
@@ -434,7 +445,15 @@ struct SequenceOptions {
   bool strict = false;              ///< stop at the first frame that cannot be drawn
   std::size_t turntable = 0;        ///< pictures of a sequence of one frame; 0: one
   std::vector<std::string> layers;  ///< of EXR files; empty: all
+  /// Asked for further frames once all are drawn; none: the sequence has ended. Null: it ends with its last frame.
+  std::function<std::vector<FramePath>()> further;
+  /// Whether a frame that could not be read may still be being written and is to be read again. Null: it is not.
+  std::function<bool(const FramePath&)> read_again;
 };
+
+/// The numbers of a sequence's pictures: those in the names of its frames if each has one and none has it twice, else
+/// they are counted from 0.
+std::vector<std::int64_t> picture_numbers(const FrameSequence& sequence);
 
 /// Refuses what render_sequence() would refuse, before any work, and makes the output's directory.
 /// @throws Error  invalid_argument: several pictures for one file, an unknown kind of file; io_failed
@@ -555,6 +574,7 @@ struct MadeHeights {
 struct SceneFile {
   std::vector<std::string> frames;  ///< what find_frames() takes, relative to the working directory
   std::optional<std::int64_t> first, last, every;
+  ReadOptions reading;                       ///< of the frames
   std::optional<WavesOptions> waves;         ///< water that is made up, instead of frames
   std::optional<SimulatedWater> simulation;  ///< water that is simulated, instead of frames
   std::optional<MadeHeights> heights;        ///< water that is a height field, instead of frames

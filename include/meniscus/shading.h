@@ -241,4 +241,25 @@ struct RainLook {
 void draw_rain(const View& view, std::span<const WaterPiece> pieces, const Surroundings& surroundings,
                const RainLook& look, const Image<float>& depth, Image<vec3>& radiance, StageTimes* times = nullptr);
 
+// --- Foam ---------------------------------------------------------------------------------------------------
+
+struct FoamLook {
+  float radius = 0;      ///< m, of a particle's disc; > 0
+  float opacity = 0.6f;  ///< in the middle of a disc, 0 .. 1; it falls off as (1 - r^2)^2
+  vec3 albedo{0.9f};     ///< linear
+};
+
+/// Draws particles of spray, foam and bubbles over a shaded picture, from far to near: white discs, lit by the sky and
+/// by the sun as balls are. Those behind the water's surface are seen where that refracts them to, less what it
+/// reflects and what the water absorbs on the way down and back. Shadows on them are left out.
+/// @param places    m
+/// @param up        unit
+/// @param water     what is seen of the surface in this view
+/// @param solids    distance along each pixel's ray to what is solid, m; infinity: nothing
+/// @param radiance  linear, of the view's size; changed
+/// @throws Error    invalid_argument: sizes that differ, a radius or opacity out of range; unsupported: a cube view
+void draw_foam(const View& view, std::span<const vec3> places, const FoamLook& look, const Environment& environment,
+               const Material& material, vec3 up, const SurfaceBuffers& water, const Image<float>& solids,
+               Image<vec3>& radiance, StageTimes* times = nullptr);
+
 }  // namespace meniscus

@@ -4,8 +4,9 @@
 #include <optional>
 
 #include "io/frame_head.h"
+#include "io/positions.h"
 #include "io/readers.h"
-#include "io/values.h"
+#include "io/rows.h"
 
 namespace meniscus::io {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 // point attributes, vertex attributes, primitive attributes, detail attributes.
 constexpr std::size_t kHeaderSize = 5 + 9 * 4;
 constexpr std::size_t kWord = 4;
+constexpr std::uint32_t kShownTexts = 6;  ///< of an index, in a note
 
 enum class Kind : std::uint32_t { real = 0, integer = 1, text = 2, mixed = 3, index = 4, vector = 5 };
 
@@ -21,6 +23,7 @@ struct PointAttribute {
   std::string name;
   std::size_t words = 0;  ///< 32-bit values a point
   Kind kind = Kind::real;
+  std::string texts;  ///< what the first numbers of an index mean: "0 'water', 1 'oil'"
 };
 
 struct Header {
@@ -95,7 +98,11 @@ std::optional<Header> header_of(const Source& source) {
         break;
       case Kind::index: {
         const std::uint32_t strings = cursor.number_32();
-        for (std::uint32_t s = 0; s < strings && !cursor.short_of_bytes; ++s) cursor.text();
+        for (std::uint32_t s = 0; s < strings && !cursor.short_of_bytes; ++s) {
+          const std::string text = cursor.text();
+          if (s < kShownTexts) attribute.texts += fmt::format("{}{} '{}'", s > 0 ? ", " : "", s, text.substr(0, 40));
+        }
+        if (strings > kShownTexts) attribute.texts += " ...";
         break;
       }
       case Kind::text:
@@ -112,39 +119,34 @@ std::optional<Header> header_of(const Source& source) {
   return header;
 }
 
-Particles points_of(const Source& source, const Header& header) {
+Particles points_of(const Source& source, const Header& header, const ReadOptions& options) {
   source.require(header.first_point, header.points, header.stride, "points");
   const auto count = static_cast<std::size_t>(header.points);
   const auto stride = static_cast<std::size_t>(header.stride);
   const char* first = source.bytes.data() + header.first_point;
-  const auto column = [&](Scalar type, std::size_t word, std::size_t words, std::vector<float>& values) {
-    values.resize(count * words);
-    read_columns(type, std::endian::big, first + word * kWord, stride, count, words, values.data());
-  };
-
   Particles particles;
   particles.format = "bgeo";
-  column(Scalar::float32, 0, 1, particles.x);
-  column(Scalar::float32, 1, 1, particles.y);
-  column(Scalar::float32, 2, 1, particles.z);
+  set_positions(Scalar::float32, std::endian::big,
+                {Column{first, stride}, {first + kWord, stride}, {first + 2 * kWord, stride}}, count, options,
+                particles);
   std::size_t word = 4;  // the fourth is the homogeneous w, 1
-  std::vector<std::string> texts;
+  std::vector<RowPart> parts;
   for (const PointAttribute& description : header.attributes) {
-    if (description.kind == Kind::index) {
-      texts.push_back(description.name);
-    } else if (description.words > 0) {
+    const bool is_index = description.kind == Kind::index;
+    if (description.words > 0) {
+      const Scalar type = is_index || description.kind == Kind::integer ? Scalar::int32 : Scalar::float32;
       Attribute& attribute = particles.attributes.emplace_back();
       attribute.name = description.name;
       attribute.components = static_cast<int>(description.words);
-      column(description.kind == Kind::integer ? Scalar::int32 : Scalar::float32, word, description.words,
-             attribute.values);
+      attribute.values.resize(count * description.words);
+      parts.push_back({type, word * kWord, description.words, attribute.values.data()});
     }
+    if (is_index)
+      particles.notes.push_back(
+          fmt::format("attribute '{}' gives its texts as numbers: {}", description.name, description.texts));
     word += description.words;
   }
-  if (!texts.empty()) {
-    const std::string more = texts.size() > 1 ? fmt::format(" and {} more", texts.size() - 1) : "";
-    particles.notes.push_back(fmt::format("left out what holds text: attribute '{}'{}", texts[0], more));
-  }
+  read_rows(first, stride, std::endian::big, count, parts);
   if (header.primitives > 0) {
     particles.notes.push_back(fmt::format("{} primitives were left out: only the points are read", header.primitives));
   }
@@ -166,18 +168,17 @@ void look_at_bgeo(const Source& start, FrameHead& head) {
   head.particles = header->points;
   head.counted = true;
   std::size_t values = 3;
-  for (const PointAttribute& attribute : header->attributes)
-    if (attribute.kind != Kind::index) values += attribute.words;
+  for (const PointAttribute& attribute : header->attributes) values += attribute.words;
   head.values = static_cast<double>(values);
 }
 
-Particles read_bgeo(const Source& source) {
+Particles read_bgeo(const Source& source, const ReadOptions& options) {
   const std::optional<Header> header = header_of(source);
   if (!header) short_header(source);
-  return points_of(source, *header);
+  return points_of(source, *header, options);
 }
 
-Particles read_bgeo(const std::string& path, Gunzip& stream) {
+Particles read_bgeo(const std::string& path, Gunzip& stream, const ReadOptions& options) {
   // Decompress until the header is whole, then as much as its points take.
   std::uint64_t size = 1 << 12;
   std::optional<Header> header;
@@ -192,7 +193,7 @@ Particles read_bgeo(const std::string& path, Gunzip& stream) {
   const Source source{path, stream.bytes()};
   source.require(header->first_point, header->points, header->stride, "points");
   stream.check_rest();
-  return points_of(source, *header);
+  return points_of(source, *header, options);
 }
 
 }  // namespace meniscus::io

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "io/series.h"
+#include "io/series_file.h"
 #include "meniscus/io.h"
 
 namespace meniscus {
@@ -64,7 +65,7 @@ FrameSequence frames_of_directory(const std::string& directory) {
   if (!sequence.frames.empty()) return sequence;
 
   // Simulators often write into directories below the one that was named.
-  std::string advice = "frames are .bgeo, .vtk, .ply, .hdf5, .xyz, .txt or .csv files";
+  std::string advice = "frames are .bgeo, .vtk, .vtu, .vtp, .ply, .hdf5, .xyz, .txt or .csv files";
   for (const std::string& below : listing.directories) {
     std::vector<std::string> files;
     try {
@@ -103,7 +104,7 @@ FrameSequence frames_of_wildcard(const std::string& wildcard) {
   if (one_directory) {
     sequence = most_likely_water(paths);
   } else {
-    for (const std::string& path : paths) sequence.frames.push_back({path, std::nullopt});
+    for (const std::string& path : paths) sequence.frames.push_back({path, {}, {}, {}});
     std::sort(sequence.frames.begin(), sequence.frames.end(),
               [](const FramePath& a, const FramePath& b) { return natural_less(a.path, b.path); });
   }
@@ -145,7 +146,7 @@ FrameSequence frames_of_pattern(const std::string& pattern) {
     if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) continue;
     const std::string digits = name.substr(before.size(), name.size() - before.size() - after.size());
     if (!std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; })) continue;
-    if (rest.empty() || is_file(path + rest)) sequence.frames.push_back({path + rest, number_of(digits)});
+    if (rest.empty() || is_file(path + rest)) sequence.frames.push_back({path + rest, number_of(digits), {}, {}});
   }
   if (sequence.frames.empty()) not_found(pattern, "no file matches the pattern", "{} stands for digits only");
   std::sort(sequence.frames.begin(), sequence.frames.end(),
@@ -173,7 +174,7 @@ FrameSequence frames_of_files(const std::vector<std::string>& paths) {
   for (const Series& series : all) {
     for (const FramePath& frame : series.frames) numbers[frame.path] = frame.number;
   }
-  for (const std::string& path : paths) sequence.frames.push_back({path, numbers[path]});
+  for (const std::string& path : paths) sequence.frames.push_back({path, numbers[path], {}, {}});
   if (all.size() < paths.size()) {
     sequence.notes.push_back(fmt::format("the {} files named belong to {} series and are taken in the order given",
                                          paths.size(), all.size()));
@@ -189,7 +190,7 @@ void append(FrameSequence& sequence, FrameSequence more) {
 
 }  // namespace
 
-FrameSequence find_frames(std::span<const std::string> arguments) {
+FrameSequence find_frames(std::span<const std::string> arguments, const ReadOptions& options) {
   if (arguments.empty()) throw Error(ErrorCode::not_found, "no frames are named");
   FrameSequence sequence;
   std::vector<std::string> files;  // named one after the other
@@ -200,6 +201,11 @@ FrameSequence find_frames(std::span<const std::string> arguments) {
   for (const std::string& argument : arguments) {
     // A name that exists is that file, whatever signs it has.
     if (is_file(argument)) {
+      if (is_series_name(argument)) {
+        flush();
+        append(sequence, frames_of_series(argument, options));
+        continue;
+      }
       files.push_back(argument);
       continue;
     }
@@ -215,6 +221,7 @@ FrameSequence find_frames(std::span<const std::string> arguments) {
     }
   }
   flush();
+  sequence.reading = options;
   return sequence;
 }
 

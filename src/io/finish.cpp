@@ -1,52 +1,154 @@
+// What is common to all formats: names, units, which particles are kept.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 
 #include "io/attributes.h"
+#include "io/fluid.h"
 #include "io/readers.h"
+#include "io/text.h"
+#include "io/where.h"
 
 namespace meniscus::io {
 namespace {
 
-/// Keeps the rows of `values` (of `components` each) that `kept` lists in ascending order.
-void keep(std::vector<float>& values, std::size_t components, const std::vector<std::size_t>& kept) {
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    for (std::size_t c = 0; c < components; ++c) values[i * components + c] = values[kept[i] * components + c];
-  }
-  values.resize(kept.size() * components);
+constexpr std::size_t kGrain = 1 << 16;
+
+/// The length of the UTF-8 character at the start of `text`, 1 to 4; 0: there is none.
+std::size_t character_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return byte(0) >= 0x20 && byte(0) != 0x7f ? 1 : 0;
+  const std::size_t length = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+  if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  // Longer forms of short characters, halves of pairs, and what is beyond the last character.
+  const unsigned start = byte(0), second = byte(1);
+  const bool wrong = (start == 0xe0 && second < 0xa0) || (start == 0xed && second > 0x9f) ||
+                     (start == 0xf0 && second < 0x90) || (start == 0xf4 && second > 0x8f);
+  return wrong ? 0 : length;
 }
 
-void drop_non_finite(Particles& particles) {
+/// Makes text of a file fit to be shown: what is no UTF-8, and control characters, become '?'.
+void make_readable(std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = character_length(std::string_view(text).substr(at));
+    if (length == 0) text[at] = '?';
+    at += std::max<std::size_t>(length, 1);
+  }
+}
+
+/// Lengths and velocities in m; positions are so already.
+void scale_lengths(double scale, Particles& particles) {
+  if (scale == 1) return;
+  const auto factor = static_cast<float>(scale);
+  if (particles.spacing) *particles.spacing *= factor;
+  constexpr std::array<std::string_view, 7> kLengths{"velocity",        "radius",           "radii", "h",
+                                                     "smoothinglength", "smoothing_length", "hsml"};
+  for (Attribute& attribute : particles.attributes) {
+    if (std::find(kLengths.begin(), kLengths.end(), lower(attribute.name)) == kLengths.end()) continue;
+    parallel_for(attribute.values.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) attribute.values[i] *= factor;
+    });
+  }
+}
+
+/// Which particles are kept, and how many of each piece of kGrain.
+struct Kept {
+  std::vector<std::uint8_t> marks;  ///< one a particle, 0 or 1; empty: all
+  std::vector<std::size_t> before;  ///< kept ones before each piece, and of all
+};
+
+/// Keeps of `values`, of `components` a particle, those of the kept particles.
+void keep(const Kept& kept, std::size_t components, std::vector<float>& values) {
+  std::vector<float> left(kept.before.back() * components);
+  parallel_for(kept.marks.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    float* to = left.data() + kept.before[begin / kGrain] * components;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (kept.marks[i] == 0) continue;
+      to = std::copy_n(values.data() + i * components, components, to);
+    }
+  });
+  values = std::move(left);
+}
+
+void keep(Kept& kept, Particles& particles) {
+  const std::size_t pieces = (kept.marks.size() + kGrain - 1) / kGrain;
+  kept.before.assign(pieces + 1, 0);
+  parallel_for(kept.marks.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end; ++i) count += kept.marks[i];
+    kept.before[begin / kGrain + 1] = count;
+  });
+  for (std::size_t piece = 0; piece < pieces; ++piece) kept.before[piece + 1] += kept.before[piece];
+  if (kept.before.back() == kept.marks.size()) return;
+  keep(kept, 1, particles.x);
+  keep(kept, 1, particles.y);
+  keep(kept, 1, particles.z);
+  for (Attribute& attribute : particles.attributes)
+    keep(kept, static_cast<std::size_t>(attribute.components), attribute.values);
+}
+
+/// Unmarks particles whose positions are not finite; how many there are.
+std::size_t unmark_non_finite(const Particles& particles, std::vector<std::uint8_t>& marks) {
   const auto finite = [&](std::size_t i) {
     return std::isfinite(particles.x[i]) && std::isfinite(particles.y[i]) && std::isfinite(particles.z[i]);
   };
-  const std::size_t count = particles.size();
-  std::size_t finite_count = 0;
-  for (std::size_t i = 0; i < count; ++i) finite_count += finite(i) ? 1 : 0;
-  if (finite_count == count) return;
+  std::atomic<std::size_t> count{0};
+  parallel_for(particles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::size_t piece = 0;
+    for (std::size_t i = begin; i < end; ++i) piece += finite(i) ? 0 : 1;
+    count += piece;
+  });
+  if (count == 0) return 0;
+  if (marks.empty()) marks.assign(particles.size(), 1);
+  parallel_for(particles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) marks[i] = marks[i] != 0 && finite(i) ? 1 : 0;
+  });
+  return count;
+}
 
-  std::vector<std::size_t> kept;
-  kept.reserve(finite_count);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (finite(i)) kept.push_back(i);
+/// Marks the particles that are asked for, or the fluid; empty: all of them.
+std::vector<std::uint8_t> marked(const ReadOptions& options, Particles& particles) {
+  const std::size_t count = particles.size();
+  const auto left_out = [](const std::vector<std::uint8_t>& marks) {
+    return std::count(marks.begin(), marks.end(), 0);
+  };
+  if (!options.where.empty()) {
+    const Condition condition(options.where);
+    std::vector<std::uint8_t> marks(count);
+    if (count > 0) condition.judge(particles, marks);
+    particles.notes.push_back(
+        fmt::format("{} of {} particles were left out: not {}", left_out(marks), count, options.where));
+    return marks;
   }
-  keep(particles.x, 1, kept);
-  keep(particles.y, 1, kept);
-  keep(particles.z, 1, kept);
-  for (Attribute& attribute : particles.attributes) {
-    keep(attribute.values, static_cast<std::size_t>(attribute.components), kept);
-  }
-  particles.dropped_non_finite = count - finite_count;
-  particles.notes.push_back(
-      fmt::format("{} of {} particles were left out: their positions are not finite", count - finite_count, count));
+  if (options.boundaries) return {};
+  bool boundaries_only = false;
+  std::optional<FluidChoice> choice = choose_fluid(particles, boundaries_only);
+  if (boundaries_only) particles.notes.push_back("all particles are boundaries, not fluid; they are kept");
+  if (!choice) return {};
+  particles.notes.push_back(fmt::format("{} of {} particles were left out: {}; --boundaries keeps them",
+                                        left_out(choice->is_fluid), count, choice->reason));
+  return std::move(choice->is_fluid);
 }
 
 }  // namespace
 
-void finish(Particles& particles) {
+void finish(const ReadOptions& options, Particles& particles) {
+  for (Attribute& attribute : particles.attributes) make_readable(attribute.name);
+  for (std::string& note : particles.notes) make_readable(note);
   unify_names(particles.attributes);
-  drop_non_finite(particles);
+  scale_lengths(options.scale, particles);
+  Kept kept{marked(options, particles), {}};
+  if (const std::size_t lost = unmark_non_finite(particles, kept.marks); lost > 0) {
+    particles.dropped_non_finite = lost;
+    particles.notes.push_back(
+        fmt::format("{} of {} particles were left out: their positions are not finite", lost, particles.size()));
+  }
+  if (!kept.marks.empty()) keep(kept, particles);
 }
 
 }  // namespace meniscus::io

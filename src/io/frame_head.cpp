@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "io/formats.h"
 #include "io/gzip.h"
 #include "io/ply_header.h"
 #include "io/readers.h"
@@ -14,6 +15,20 @@ namespace {
 
 constexpr std::size_t kStart = std::size_t{1} << 16;     ///< bytes of a file that are looked at
 constexpr std::size_t kInflated = std::size_t{1} << 14;  ///< of a compressed one, after decompression
+
+/// The size that the end of a gzip file says, modulo 4 GiB; at least three times the compressed one is taken.
+std::uint64_t inflated_size(const std::string& path, std::uint64_t compressed) {
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-4, std::ios::end);
+  unsigned char last[4] = {0, 0, 0, 0};
+  file.read(reinterpret_cast<char*>(last), 4);
+  std::uint64_t size = 0;
+  for (int i = 3; i >= 0; --i) size = size << 8 | last[i];
+  while (size < compressed && compressed >> 32 > 0) size += std::uint64_t{1} << 32;
+  return std::min(size >= compressed / 8 ? size : 3 * compressed, believable_size(compressed));
+}
+
+}  // namespace
 
 void look_at_ply(const Source& start, FrameHead& head) {
   const PlyHeader header = read_ply_header(start);
@@ -56,32 +71,6 @@ void look_at_vtk(const Source& start, FrameHead& head) {
   head.values = std::max(3.0, a_particle / (head.text ? 9.0 : static_cast<double>(size)));
 }
 
-/// The size that the end of a gzip file says, modulo 4 GiB; at least three times the compressed one is taken.
-std::uint64_t inflated_size(const std::string& path, std::uint64_t compressed) {
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(-4, std::ios::end);
-  unsigned char last[4] = {0, 0, 0, 0};
-  file.read(reinterpret_cast<char*>(last), 4);
-  std::uint64_t size = 0;
-  for (int i = 3; i >= 0; --i) size = size << 8 | last[i];
-  while (size < compressed && compressed >> 32 > 0) size += std::uint64_t{1} << 32;
-  return std::min(size >= compressed / 8 ? size : 3 * compressed, believable_size(compressed));
-}
-
-void look_at_plain(const Source& start, FrameHead& head) {
-  if (start.starts_with("BgeoV")) {
-    look_at_bgeo(start, head);
-  } else if (start.starts_with("# vtk DataFile")) {
-    look_at_vtk(start, head);
-  } else if (start.starts_with("ply\n") || start.starts_with("ply\r")) {
-    look_at_ply(start, head);
-  } else {
-    look_at_xyz(start, head);
-  }
-}
-
-}  // namespace
-
 std::uint64_t FrameHead::particle_bytes() const {
   return static_cast<std::uint64_t>(static_cast<double>(particles) * values * sizeof(float));
 }
@@ -99,15 +88,18 @@ FrameHead look_at_frame(const std::string& path) {
   if (std::error_code error; start.size() == kStart)
     head.file_bytes = head.plain_bytes = std::filesystem::file_size(path, error);
   const Source source{path, start.span()};
-  if (source.starts_with("\x89HDF\r\n\x1a\n")) {
-    look_at_hdf5(path, head);
-  } else if (source.starts_with("\x1f\x8b")) {
+  const auto look = [&](const Source& plain) {
+    const Format& format = format_of(plain);
+    head.format = format.name;
+    if (format.look) format.look(plain, head);
+  };
+  if (source.starts_with("\x1f\x8b")) {
     head.plain_bytes = inflated_size(path, head.file_bytes);
     Gunzip stream(source);
     stream.grow_to(std::min<std::uint64_t>(kInflated, std::max<std::uint64_t>(head.plain_bytes / 2, 64)));
-    look_at_plain(Source{path, stream.bytes()}, head);
+    look(Source{path, stream.bytes()});
   } else {
-    look_at_plain(source, head);
+    look(source);
   }
   return head;
 }

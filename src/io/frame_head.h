@@ -28,6 +28,8 @@ FrameHead look_at_frame(const std::string& path);
 
 // One a format, from the first bytes; `file_bytes` are those of the whole file after decompression.
 void look_at_bgeo(const Source& start, FrameHead& head);
+void look_at_vtk(const Source& start, FrameHead& head);
+void look_at_ply(const Source& start, FrameHead& head);
 void look_at_xyz(const Source& start, FrameHead& head);
 /// Reads the file itself.
 void look_at_hdf5(const std::string& path, FrameHead& head);

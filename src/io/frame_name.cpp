@@ -26,15 +26,19 @@ std::string_view without_zeros(std::string_view digits) {
 }
 
 // Dense binary formats of particles first, then those that also hold meshes, then text.
-constexpr std::array<std::pair<std::string_view, int>, 9> kExtensions{{{".bgeo", 0},
-                                                                       {".vtk", 1},
-                                                                       {".hdf5", 2},
-                                                                       {".h5", 2},
-                                                                       {".ply", 3},
-                                                                       {".xyz", 4},
-                                                                       {".csv", 5},
-                                                                       {".txt", 6},
-                                                                       {".dat", 6}}};
+constexpr std::array<std::pair<std::string_view, int>, 13> kExtensions{{{".bgeo", 0},
+                                                                        {".vtk", 1},
+                                                                        {".vtu", 1},
+                                                                        {".vtp", 1},
+                                                                        {".pvtu", 1},
+                                                                        {".pvtp", 1},
+                                                                        {".hdf5", 2},
+                                                                        {".h5", 2},
+                                                                        {".ply", 3},
+                                                                        {".xyz", 4},
+                                                                        {".csv", 5},
+                                                                        {".txt", 6},
+                                                                        {".dat", 6}}};
 
 std::string_view without_gz(std::string_view extension) {
   if (extension.ends_with(".gz")) extension.remove_suffix(3);

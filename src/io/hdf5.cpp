@@ -5,9 +5,9 @@
 #include <mutex>
 
 #include "io/frame_head.h"
-#include "io/hdf5_handles.h"
+#include "io/hdf5_layouts.h"
+#include "io/join_pieces.h"
 #include "io/readers.h"
-#include "io/text.h"
 
 namespace meniscus::io {
 namespace {
@@ -18,55 +18,34 @@ std::mutex& hdf5_mutex() {
   return mutex;
 }
 
-/// The less, the more a group's name speaks of water.
-int rank_of(const std::string& name) {
-  const std::string plain = lower(name);
-  const auto has = [&](std::string_view word) { return plain.find(word) != std::string::npos; };
-  if (plain == "fluid") return 0;
-  if (has("bound") || has("obstacle") || has("solid") || has("wall") || has("tank") || has("gate")) return 3;
-  return has("fluid") || has("water") || has("liquid") ? 1 : 2;
-}
+/// The values of a group's positions and of what else it knows of each particle, an array after the other.
+Particles read_group(Hdf5Particles& chosen, const ReadOptions& options) {
+  Particles particles;
+  std::vector<Bytes> positions;
+  for (const std::size_t place : chosen.found.places) positions.push_back(chosen.group.load(chosen.arrays[place]));
+  set_positions(chosen.arrays, chosen.found, options, particles);
+  positions.clear();
+  if (chosen.found.guessed)
+    particles.notes.push_back(
+        fmt::format("took the array '{}' for positions", chosen.arrays[chosen.found.places[0]].name));
 
-struct Candidate {
-  std::string name;
-  Hdf5Group arrays;
-  std::uint64_t count = 0;
-};
-
-/// The groups below /particles that have positions, the water first.
-std::vector<Candidate> candidates_of(const Hdf5Group& particles) {
-  std::vector<Candidate> candidates;
-  for (const std::string& name : particles.names()) {
-    const std::optional<Hdf5Group> group = particles.group(name);
-    if (!group) continue;
-    std::optional<Hdf5Group> arrays = group->group("arrays");
-    if (!arrays) arrays = particles.group(name);
-    const auto x = arrays->length_of("x"), y = arrays->length_of("y"), z = arrays->length_of("z");
-    if (!x || !y || !z || *x != *y || *x != *z) continue;
-    candidates.push_back({name, std::move(*arrays), *x});
-  }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    const int rank_a = rank_of(a.name), rank_b = rank_of(b.name);
-    return rank_a != rank_b ? rank_a < rank_b : a.count > b.count;
-  });
-  return candidates;
-}
-
-void read_attributes(const Hdf5Group& arrays, std::uint64_t count, Particles& particles) {
-  for (const std::string& name : arrays.names()) {
-    if (name == "x" || name == "y" || name == "z") continue;
-    // Arrays that were not stored have no values; those of several values a particle say so by a stride.
-    const std::optional<std::uint64_t> length = arrays.length_of(name);
-    if (!length || *length == 0 || count == 0) continue;
-    const double stride = arrays.number_of(name, "stride").value_or(1);
-    if (!(stride >= 1 && stride <= 4096) || *length % static_cast<std::uint64_t>(stride) != 0 ||
-        *length / static_cast<std::uint64_t>(stride) != count) {
-      particles.notes.push_back(
-          fmt::format("array '{}' has {} values for {} particles and was left out", name, *length, count));
-      continue;
+  std::string left_out;
+  for (std::size_t i = 0; i < chosen.arrays.size(); ++i) {
+    NumberArray& array = chosen.arrays[i];
+    const std::vector<std::size_t>& places = chosen.found.places;
+    if (std::find(places.begin(), places.end(), i) != places.end()) continue;
+    // Arrays that were not stored have no values.
+    if (array.rows() == std::uint64_t{0} || chosen.found.count == 0) continue;
+    const std::string why = why_no_attribute(array, chosen.found.count);
+    if (why.empty()) {
+      const Bytes values = chosen.group.load(array);
+      particles.attributes.push_back(attribute_of(array));
+    } else if (left_out.size() < 200) {
+      left_out += fmt::format("{}'{}' {}", left_out.empty() ? "" : ", ", array.name.substr(0, 60), why);
     }
-    particles.attributes.push_back({name, static_cast<int>(stride), arrays.read(name)});
   }
+  if (!left_out.empty()) particles.notes.push_back("left out arrays: " + left_out);
+  return particles;
 }
 
 float median_of(std::vector<float> values) {
@@ -97,21 +76,24 @@ std::optional<float> spacing_of(const Particles& particles) {
   return spacing;
 }
 
-/// The groups of a file that may be the water, at least one.
-std::vector<Candidate> candidates_in(const Hdf5Group& file, const std::string& path) {
-  const std::optional<Hdf5Group> groups = file.group("particles");
-  std::vector<Candidate> candidates;
-  if (groups) candidates = candidates_of(*groups);
-  if (candidates.empty()) {
-    throw Error(ErrorCode::unsupported, {"is HDF5, but not as PySPH writes it",
-                                         "groups /particles/NAME/arrays with x, y, z",
-                                         {},
-                                         path,
-                                         {},
-                                         {},
-                                         "export the particles as VTK, PLY or text"});
-  }
-  return candidates;
+/// s, where PySPH, Gadget and SWIFT, or a plain file write it.
+std::optional<double> time_of(const Hdf5Group& file) {
+  if (const std::optional<Hdf5Group> solver = file.group("solver_data"))
+    if (const std::optional<double> time = solver->number("t")) return time;
+  if (const std::optional<Hdf5Group> header = file.group("Header"))
+    if (const std::optional<double> time = header->number("Time")) return time;
+  for (const char* name : {"time", "Time", "t"})
+    if (const std::optional<double> time = file.number(name)) return time;
+  return std::nullopt;
+}
+
+/// Gadget and SWIFT may write a snapshot into several files.
+void note_other_files(const Hdf5Group& file, Particles& particles) {
+  const std::optional<Hdf5Group> header = file.group("Header");
+  const double files = header ? header->number("NumFilesPerSnapshot").value_or(1) : 1;
+  if (files > 1)
+    particles.notes.push_back(fmt::format(
+        "this file is one of {:.0f} of a snapshot: the others' particles are missing here; join them first", files));
 }
 
 }  // namespace
@@ -119,38 +101,49 @@ std::vector<Candidate> candidates_in(const Hdf5Group& file, const std::string& p
 void look_at_hdf5(const std::string& path, FrameHead& head) {
   const std::lock_guard lock(hdf5_mutex());
   const QuietHdf5 quiet;
-  const std::vector<Candidate> candidates = candidates_in(Hdf5Group::open_file(path), path);
-  const Candidate& water = candidates.front();
-  std::uint64_t values = 0;
-  for (const std::string& name : water.arrays.names()) values += water.arrays.length_of(name).value_or(0);
   head.format = "hdf5";
-  head.particles = water.count;
-  head.counted = true;
-  if (water.count > 0) head.values = static_cast<double>(values) / static_cast<double>(water.count);
+  head.particles = head.file_bytes / (3 * sizeof(float));
+  const Hdf5Group file = Hdf5Group::open_file(path);
+  try {
+    const std::vector<Hdf5Particles> candidates = particles_in(file, {}, path);
+    const Hdf5Particles& water = candidates.front();
+    double values = 0;
+    for (const NumberArray& array : water.arrays)
+      if (array.rows() == water.found.count) values += static_cast<double>(array.columns());
+    head.particles = water.found.count;
+    head.counted = true;
+    if (water.found.count > 0) head.values = std::max(3.0, values);
+  } catch (const Error& error) {
+    // Options may name positions that nothing here tells of.
+    if (error.code() != ErrorCode::unsupported) throw;
+  }
 }
 
-Particles read_hdf5(const std::string& path) {
+Particles read_hdf5(const Source& start, const ReadOptions& options) {
+  const std::string& path = start.path;
   const std::lock_guard lock(hdf5_mutex());
   const QuietHdf5 quiet;
   const Hdf5Group file = Hdf5Group::open_file(path);
-  const std::vector<Candidate> candidates = candidates_in(file, path);
-  const Candidate& chosen = candidates.front();
-  Particles particles;
+  std::vector<Hdf5Particles> candidates = particles_in(file, options, path);
+  // The water; with options.boundaries what stands around it, too.
+  std::vector<std::size_t> chosen{0};
+  if (options.boundaries)
+    for (std::size_t i = 1; i < candidates.size(); ++i)
+      if (candidates[i].is_boundary) chosen.push_back(i);
+  Particles particles = join_pieces(chosen.size(), options, [&](std::size_t piece, const ReadOptions& reading) {
+    return read_group(candidates[chosen[piece]], reading);
+  });
   particles.format = "hdf5";
-  particles.x = chosen.arrays.read("x");
-  particles.y = chosen.arrays.read("y");
-  particles.z = chosen.arrays.read("z");
-  read_attributes(chosen.arrays, chosen.count, particles);
-  if (const std::optional<Hdf5Group> solver = file.group("solver_data")) particles.time = solver->number("t");
-  particles.spacing = spacing_of(particles);
-  if (candidates.size() > 1) {
-    std::string others;
-    for (std::size_t i = 1; i < candidates.size(); ++i) {
-      others += fmt::format("{}'{}' ({})", i > 1 ? ", " : "", candidates[i].name, candidates[i].count);
-    }
-    particles.notes.push_back(
-        fmt::format("read the group '{}' ({} particles), left out {}", chosen.name, chosen.count, others));
-  }
+  particles.time = time_of(file);
+  if (chosen.size() == 1) particles.spacing = spacing_of(particles);
+  note_other_files(file, particles);
+  std::string others;
+  for (std::size_t i = 1; i < candidates.size(); ++i)
+    if (std::find(chosen.begin(), chosen.end(), i) == chosen.end())
+      others += fmt::format("{}'{}' ({})", others.empty() ? "" : ", ", candidates[i].name, candidates[i].found.count);
+  if (!others.empty())
+    particles.notes.push_back(fmt::format("read the group '{}' ({} particles), left out {}", candidates[0].name,
+                                          candidates[0].found.count, others));
   return particles;
 }
 

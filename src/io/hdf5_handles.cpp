@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <system_error>
 
@@ -11,9 +12,40 @@
 namespace meniscus::io {
 namespace {
 
+constexpr std::size_t kMostNames = 4096;  ///< of a group that are looked at
+
 bool is_numeric(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
   return kind == H5T_FLOAT || kind == H5T_INTEGER;
+}
+
+/// Access that follows no link into another file.
+Hdf5Handle within_the_file(hid_t kind) {
+  Hdf5Handle access(H5Pcreate(kind), H5Pclose);
+  const auto refuse = [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t {
+    return -1;
+  };
+  H5Pset_elink_cb(access.get(), refuse, nullptr);
+  return access;
+}
+
+/// The type and byte order of numbers that stand in the file as they are here; none: the library converts them.
+std::optional<std::pair<Scalar, std::endian>> plain_type(hid_t type) {
+  const std::array<std::pair<hid_t, hid_t>, 10> known{{{H5T_STD_I8LE, H5T_STD_I8BE},
+                                                       {H5T_STD_U8LE, H5T_STD_U8BE},
+                                                       {H5T_STD_I16LE, H5T_STD_I16BE},
+                                                       {H5T_STD_U16LE, H5T_STD_U16BE},
+                                                       {H5T_STD_I32LE, H5T_STD_I32BE},
+                                                       {H5T_STD_U32LE, H5T_STD_U32BE},
+                                                       {H5T_STD_I64LE, H5T_STD_I64BE},
+                                                       {H5T_STD_U64LE, H5T_STD_U64BE},
+                                                       {H5T_IEEE_F32LE, H5T_IEEE_F32BE},
+                                                       {H5T_IEEE_F64LE, H5T_IEEE_F64BE}}};
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (H5Tequal(type, known[i].first) > 0) return std::pair{static_cast<Scalar>(i), std::endian::little};
+    if (H5Tequal(type, known[i].second) > 0) return std::pair{static_cast<Scalar>(i), std::endian::big};
+  }
+  return std::nullopt;
 }
 
 std::optional<double> number_in(hid_t attribute) {
@@ -45,8 +77,9 @@ Hdf5Group Hdf5Group::open_file(const std::string& path) {
 }
 
 std::optional<Hdf5Group> Hdf5Group::group(const std::string& name) const {
-  if (H5Lexists(handle_.get(), name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
-  Hdf5Handle group(H5Gopen2(handle_.get(), name.c_str(), H5P_DEFAULT), H5Gclose);
+  const Hdf5Handle access = within_the_file(H5P_GROUP_ACCESS);
+  if (H5Lexists(handle_.get(), name.c_str(), access.get()) <= 0) return std::nullopt;
+  Hdf5Handle group(H5Gopen2(handle_.get(), name.c_str(), access.get()), H5Gclose);
   if (!group) return std::nullopt;
   return Hdf5Group{std::move(group), path_, file_size_};
 }
@@ -54,32 +87,45 @@ std::optional<Hdf5Group> Hdf5Group::group(const std::string& name) const {
 std::vector<std::string> Hdf5Group::names() const {
   std::vector<std::string> names;
   const auto add = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
+    auto& found = *static_cast<std::vector<std::string>*>(list);
+    found.emplace_back(name);
+    return found.size() < kMostNames ? 0 : 1;
   };
   H5Literate(handle_.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
   std::sort(names.begin(), names.end());
   return names;
 }
 
-std::optional<Hdf5Handle> Hdf5Group::numeric_array(const std::string& name) const {
-  if (H5Lexists(handle_.get(), name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
-  Hdf5Handle dataset(H5Dopen2(handle_.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+std::optional<NumberArray> Hdf5Group::describe(const std::string& name) const {
+  NumberArray array;
+  array.name = name;
+  const Hdf5Handle access = within_the_file(H5P_DATASET_ACCESS);
+  if (H5Lexists(handle_.get(), name.c_str(), access.get()) <= 0) return std::nullopt;
+  H5L_info_t link{};
+  if (H5Lget_info(handle_.get(), name.c_str(), &link, access.get()) >= 0 && link.type == H5L_TYPE_EXTERNAL) {
+    array.type_name = "a link to another file";
+    return array;
+  }
+  const Hdf5Handle dataset(H5Dopen2(handle_.get(), name.c_str(), access.get()), H5Dclose);
   if (!dataset) return std::nullopt;
+  const Hdf5Handle plan(H5Dget_create_plist(dataset.get()), H5Pclose);
+  if (!plan || H5Pget_layout(plan.get()) == H5D_VIRTUAL || H5Pget_external_count(plan.get()) != 0) {
+    array.type_name = "values in other files";
+    return array;
+  }
   const Hdf5Handle type(H5Dget_type(dataset.get()), H5Tclose);
   const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  if (!type || !is_numeric(type.get()) || !space) return std::nullopt;
-  if (H5Sget_simple_extent_ndims(space.get()) != 1) return std::nullopt;
-  return dataset;
-}
-
-std::optional<std::uint64_t> Hdf5Group::length_of(const std::string& name) const {
-  const std::optional<Hdf5Handle> dataset = numeric_array(name);
-  if (!dataset) return std::nullopt;
-  const Hdf5Handle space(H5Dget_space(dataset->get()), H5Sclose);
-  const hssize_t points = H5Sget_simple_extent_npoints(space.get());
-  if (points < 0) return std::nullopt;
-  return static_cast<std::uint64_t>(points);
+  if (!type || !space) return std::nullopt;
+  std::array<hsize_t, H5S_MAX_RANK> lengths{};
+  const int rank = H5Sget_simple_extent_dims(space.get(), lengths.data(), nullptr);
+  for (int i = 0; i < rank; ++i) array.shape.push_back(lengths[static_cast<std::size_t>(i)]);
+  array.type_name = "no numbers";
+  if (H5Sget_simple_extent_type(space.get()) == H5S_NULL || !is_numeric(type.get())) return array;
+  const auto plain = plain_type(type.get());
+  array.type = plain ? plain->first : Scalar::float64;
+  array.order = plain ? plain->second : std::endian::native;
+  array.type_name = name_of(*array.type);
+  return array;
 }
 
 /// An array may claim any length: it must be in the file, or, compressed in chunks, be worth what is in the file.
@@ -92,10 +138,16 @@ void Hdf5Group::check_size(hid_t dataset, const std::string& name) const {
   const auto count = static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space.get()));
   const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(dataset), file_size_);
   std::uint64_t most = stored;
-  hsize_t chunk = 0;
+  std::uint64_t chunk = 0;
   if (H5Pget_layout(plan.get()) == H5D_CHUNKED) {
     most = std::min(kMostDeflate * stored, believable_size(file_size_));
-    if (H5Pget_chunk(plan.get(), 1, &chunk) != 1) chunk = 0;
+    std::array<hsize_t, H5S_MAX_RANK> lengths{};
+    const int rank = H5Pget_chunk(plan.get(), H5S_MAX_RANK, lengths.data());
+    chunk = 1;
+    for (int i = 0; i < rank; ++i) {
+      const hsize_t length = std::max<hsize_t>(lengths[static_cast<std::size_t>(i)], 1);
+      chunk = chunk > ~std::uint64_t{0} / length ? ~std::uint64_t{0} : chunk * length;
+    }
   }
   if (item > 0 && count <= most / item && (count == 0 || chunk <= std::max(most, file_size_) / item)) return;
   throw Error(ErrorCode::malformed_file, {fmt::format("the array '{}' is longer than what is stored of it", name),
@@ -107,19 +159,32 @@ void Hdf5Group::check_size(hid_t dataset, const std::string& name) const {
                                           {}});
 }
 
-std::vector<float> Hdf5Group::read(const std::string& name) const {
-  const std::optional<Hdf5Handle> dataset = numeric_array(name);
-  if (!dataset) {
+Bytes Hdf5Group::load(NumberArray& array) const {
+  const Hdf5Handle access = within_the_file(H5P_DATASET_ACCESS);
+  const Hdf5Handle dataset(H5Dopen2(handle_.get(), array.name.c_str(), access.get()), H5Dclose);
+  if (!dataset || !array.type)
     throw Error(ErrorCode::malformed_file,
-                {fmt::format("has no array '{}' of numbers", name), {}, {}, path_, {}, {}, {}});
-  }
-  check_size(dataset->get(), name);
-  std::vector<float> values(static_cast<std::size_t>(length_of(name).value_or(0)));
-  if (!values.empty() && H5Dread(dataset->get(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+                {fmt::format("has no array '{}' of numbers", array.name), {}, {}, path_, {}, {}, {}});
+  check_size(dataset.get(), array.name);
+  const Hdf5Handle stored(H5Dget_type(dataset.get()), H5Tclose);
+  const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  const auto count = static_cast<std::uint64_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space.get()), 0));
+  const std::size_t value = size_of(*array.type);
+  Bytes bytes(static_cast<std::size_t>(count) * value);
+  const hid_t type = plain_type(stored.get()) ? stored.get() : H5T_NATIVE_DOUBLE;
+  if (count > 0 && H5Dread(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
     throw Error(ErrorCode::malformed_file,
-                {fmt::format("the array '{}' is damaged", name), {}, {}, path_, {}, {}, "write the frame again"});
-  }
-  return values;
+                {fmt::format("the array '{}' is damaged", array.name), {}, {}, path_, {}, {}, "write the frame again"});
+  array.first = bytes.data();
+  array.step = value;
+  array.stride = array.columns() * value;
+  return bytes;
+}
+
+std::uint64_t Hdf5Group::address() const {
+  H5O_info_t about{};
+  H5Oget_info2(handle_.get(), &about, H5O_INFO_BASIC);
+  return about.addr;
 }
 
 std::optional<double> Hdf5Group::number(const std::string& name) const {
@@ -128,7 +193,8 @@ std::optional<double> Hdf5Group::number(const std::string& name) const {
     return number_in(attribute.get());
   }
   if (H5Lexists(handle_.get(), name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
-  const Hdf5Handle dataset(H5Dopen2(handle_.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle access = within_the_file(H5P_DATASET_ACCESS);
+  const Hdf5Handle dataset(H5Dopen2(handle_.get(), name.c_str(), access.get()), H5Dclose);
   if (!dataset) return std::nullopt;
   const Hdf5Handle type(H5Dget_type(dataset.get()), H5Tclose);
   const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);

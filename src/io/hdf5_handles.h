@@ -3,7 +3,8 @@
 
 #include <hdf5.h>
 
-#include "meniscus/base.h"
+#include "io/bytes.h"
+#include "io/number_arrays.h"
 
 namespace meniscus::io {
 
@@ -57,11 +58,14 @@ class Hdf5Group {
   std::optional<Hdf5Group> group(const std::string& name) const;
   /// Names of everything in it, sorted.
   std::vector<std::string> names() const;
-  /// Number of values of a numeric array of one dimension; none if there is no such array.
-  std::optional<std::uint64_t> length_of(const std::string& name) const;
-  /// The array as floats.
+  /// What an array in it is, without its values; none if there is no array of that name. Links to other files and
+  /// arrays whose values stand in other files are told of, but have no type: they are never followed.
+  std::optional<NumberArray> describe(const std::string& name) const;
+  /// Reads the values of an array that describe() gave and lets it point to them.
   /// @throws Error malformed_file: damaged, or longer than the stored bytes can justify
-  std::vector<float> read(const std::string& name) const;
+  Bytes load(NumberArray& array) const;
+  /// A number that tells groups apart, the same for every name that a group has.
+  std::uint64_t address() const;
   /// A number stored as an attribute of this group or as an array of one value in it.
   std::optional<double> number(const std::string& name) const;
   /// An attribute of one number of the array `array` in this group.
@@ -70,7 +74,6 @@ class Hdf5Group {
  private:
   Hdf5Group(Hdf5Handle handle, std::string path, std::uint64_t file_size)
       : handle_(std::move(handle)), path_(std::move(path)), file_size_(file_size) {}
-  std::optional<Hdf5Handle> numeric_array(const std::string& name) const;
   void check_size(hid_t dataset, const std::string& name) const;
   Hdf5Handle handle_;
   std::string path_;

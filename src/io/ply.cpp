@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "io/number_arrays.h"
 #include "io/ply_header.h"
 #include "io/readers.h"
+#include "io/rows.h"
 #include "io/text.h"
 
 namespace meniscus::io {
@@ -20,8 +22,8 @@ float linear_from_byte(float value) {
 
 class PlyReader {
  public:
-  PlyReader(const Source& source, PlyHeader header)
-      : source_(source), header_(std::move(header)), text_(source, header_.end), at_(header_.end) {}
+  PlyReader(const Source& source, PlyHeader header, const ReadOptions& options)
+      : source_(source), header_(std::move(header)), options_(options), text_(source, header_.end), at_(header_.end) {}
 
   Particles read() {
     particles_.format = "ply";
@@ -76,86 +78,104 @@ class PlyReader {
   }
 
   void read_vertices(const PlyElement& vertex) {
-    check_has_position(vertex);
+    const std::array<std::size_t, 3> axes = axes_of(vertex);
     source_.require(position(), vertex.count, header_.ascii ? 2 * vertex.properties.size() - 1 : vertex.row_size(),
                     "vertices");
     const auto count = static_cast<std::size_t>(vertex.count);
-    const std::size_t properties = vertex.properties.size();
-    std::vector<std::vector<float>> columns(properties);
-    for (std::size_t p = 0; p < properties; ++p) {
-      if (!vertex.properties[p].list_count_type) columns[p].resize(count);
-    }
+    std::vector<std::vector<float>> columns(vertex.properties.size());
+    for (std::size_t p = 0; p < columns.size(); ++p)
+      if (!vertex.properties[p].list_count_type && axis_of(axes, p) < 0) columns[p].resize(count);
 
-    if (header_.ascii) {
-      read_ascii(vertex, columns);
-    } else if (vertex.has_list()) {
-      read_binary_rows(vertex, columns);
+    if (header_.ascii || vertex.has_list()) {
+      std::vector<double> positions(3 * count);
+      read_one_by_one(vertex, axes, columns, positions);
+      set_positions(positions, options_, particles_);
     } else {
-      // Every row has the same size: convert column by column.
-      std::size_t offset = at_;
-      for (std::size_t p = 0; p < properties; ++p) {
-        const Scalar type = vertex.properties[p].type;
-        read_columns(type, header_.order, source_.bytes.data() + offset, vertex.row_size(), count, 1,
-                     columns[p].data());
-        offset += size_of(type);
+      read_blocks(vertex, axes, columns);
+    }
+    for (std::size_t p = 0; p < columns.size(); ++p) {
+      const PlyProperty& property = vertex.properties[p];
+      if (property.list_count_type) {
+        particles_.notes.push_back(fmt::format("property '{}' is a list and was left out", property.name));
+      } else if (axis_of(axes, p) < 0) {
+        particles_.attributes.push_back({property.name, 1, std::move(columns[p])});
       }
     }
-    move_columns(vertex, columns);
+    join_colour(vertex);
   }
 
-  void check_has_position(const PlyElement& vertex) const {
-    for (const std::string_view axis : {"x", "y", "z"}) {
-      const bool found = std::any_of(
+  /// Which properties are x, y and z: the first of the name.
+  std::array<std::size_t, 3> axes_of(const PlyElement& vertex) const {
+    std::array<std::size_t, 3> axes{};
+    constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto found = std::find_if(
           vertex.properties.begin(), vertex.properties.end(),
-          [axis](const PlyProperty& property) { return property.name == axis && !property.list_count_type; });
-      if (!found) source_.malformed(fmt::format("its vertices have no property '{}'", axis), header_.end);
+          [&](const PlyProperty& property) { return property.name == kAxes[axis] && !property.list_count_type; });
+      if (found == vertex.properties.end())
+        source_.malformed(fmt::format("its vertices have no property '{}'", kAxes[axis]), header_.end);
+      axes[axis] = static_cast<std::size_t>(found - vertex.properties.begin());
     }
+    return axes;
   }
 
-  void read_ascii(const PlyElement& vertex, std::vector<std::vector<float>>& columns) {
+  static int axis_of(const std::array<std::size_t, 3>& axes, std::size_t property) {
+    const auto found = std::find(axes.begin(), axes.end(), property);
+    return found == axes.end() ? -1 : static_cast<int>(found - axes.begin());
+  }
+
+  /// Rows whose lengths are known only when they are read: text, and rows with lists.
+  void read_one_by_one(const PlyElement& vertex, const std::array<std::size_t, 3>& axes,
+                       std::vector<std::vector<float>>& columns, std::vector<double>& positions) {
+    std::vector<int> axis(columns.size());
+    for (std::size_t p = 0; p < columns.size(); ++p) axis[p] = axis_of(axes, p);
     for (std::size_t row = 0; row < vertex.count; ++row) {
       for (std::size_t p = 0; p < columns.size(); ++p) {
-        if (vertex.properties[p].list_count_type) {
-          skip_value(vertex.properties[p], "vertices");
+        const PlyProperty& property = vertex.properties[p];
+        if (property.list_count_type) {
+          skip_value(property, "vertices");
+        } else if (axis[p] >= 0) {
+          positions[3 * row + static_cast<std::size_t>(axis[p])] = value_of(property);
         } else {
-          columns[p][row] = text_.number("vertices");
+          columns[p][row] = header_.ascii ? text_.number("vertices") : static_cast<float>(value_of(property));
         }
       }
     }
   }
 
-  void read_binary_rows(const PlyElement& vertex, std::vector<std::vector<float>>& columns) {
-    for (std::size_t row = 0; row < vertex.count; ++row) {
-      for (std::size_t p = 0; p < columns.size(); ++p) {
-        const PlyProperty& property = vertex.properties[p];
-        const std::size_t before = at_;
-        skip_value(property, "vertices");
-        if (property.list_count_type) continue;
-        const double value = read_value(property.type, header_.order, source_.bytes.data() + before);
-        columns[p][row] = static_cast<float>(value);
-      }
-    }
+  double value_of(const PlyProperty& property) {
+    if (header_.ascii) return text_.wide_number("vertices");
+    const std::size_t before = at_;
+    skip_value(property, "vertices");
+    return read_value(property.type, header_.order, source_.bytes.data() + before);
   }
 
-  void move_columns(const PlyElement& vertex, std::vector<std::vector<float>>& columns) {
-    bool has_x = false, has_y = false, has_z = false;
-    const auto take = [&](const std::string& name, std::string_view axis, bool& taken, std::vector<float>& target,
-                          std::vector<float>& column) {
-      if (taken || name != axis) return false;
-      target = std::move(column);
-      return taken = true;
-    };
+  /// Rows of one size: converted in blocks.
+  void read_blocks(const PlyElement& vertex, const std::array<std::size_t, 3>& axes,
+                   std::vector<std::vector<float>>& columns) {
+    const auto count = static_cast<std::size_t>(vertex.count);
+    const std::size_t stride = vertex.row_size();
+    const char* first = source_.bytes.data() + at_;
+    std::vector<std::size_t> offsets;
+    std::vector<RowPart> parts;
+    std::size_t offset = 0;
     for (std::size_t p = 0; p < columns.size(); ++p) {
-      const PlyProperty& property = vertex.properties[p];
-      if (property.list_count_type) {
-        particles_.notes.push_back(fmt::format("property '{}' is a list and was left out", property.name));
-      } else if (!take(property.name, "x", has_x, particles_.x, columns[p]) &&
-                 !take(property.name, "y", has_y, particles_.y, columns[p]) &&
-                 !take(property.name, "z", has_z, particles_.z, columns[p])) {
-        particles_.attributes.push_back({property.name, 1, std::move(columns[p])});
-      }
+      const Scalar type = vertex.properties[p].type;
+      if (axis_of(axes, p) < 0) parts.push_back({type, offset, 1, columns[p].data()});
+      offsets.push_back(offset);
+      offset += size_of(type);
     }
-    join_colour(vertex);
+    read_rows(first, stride, header_.order, count, parts);
+    std::array<NumberArray, 3> arrays;
+    PositionArrays found{{0, 1, 2}, vertex.count};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      arrays[axis].type = vertex.properties[axes[axis]].type;
+      arrays[axis].order = header_.order;
+      arrays[axis].shape = {vertex.count};
+      arrays[axis].first = first + offsets[axes[axis]];
+      arrays[axis].stride = stride;
+    }
+    set_positions(arrays, found, options_, particles_);
   }
 
   /// red, green, blue of 8 bits become "color", linear.
@@ -183,6 +203,7 @@ class PlyReader {
 
   Source source_;
   PlyHeader header_;
+  const ReadOptions& options_;
   TextCursor text_;
   std::size_t at_;
   Particles particles_;
@@ -190,6 +211,8 @@ class PlyReader {
 
 }  // namespace
 
-Particles read_ply(const Source& source) { return PlyReader(source, read_ply_header(source)).read(); }
+Particles read_ply(const Source& source, const ReadOptions& options) {
+  return PlyReader(source, read_ply_header(source), options).read();
+}
 
 }  // namespace meniscus::io

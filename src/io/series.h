@@ -23,6 +23,9 @@ std::vector<Series> series_of(const std::vector<std::string>& paths);
 /// one by one. Empty if nothing is left.
 FrameSequence most_likely_water(const std::vector<std::string>& paths);
 
+/// Of paths that are different things at one time (fluid, boundary), the one that is most likely the water.
+std::string likeliest_water(const std::vector<std::string>& paths);
+
 /// "frame 450 is missing (frames come every 90)", or nothing. The step is the most common difference.
 std::optional<std::string> missing_note(const std::vector<FramePath>& frames);
 

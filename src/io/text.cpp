@@ -93,6 +93,13 @@ float TextCursor::number(std::string_view what) {
   return value;
 }
 
+double TextCursor::wide_number(std::string_view what) {
+  const std::string_view found = word();
+  double value = 0;
+  if (!parse(found, value)) fail(what, at_ - found.size(), found);
+  return value;
+}
+
 std::uint64_t TextCursor::count(std::string_view what) {
   const std::string_view found = word();
   std::uint64_t value = 0;

@@ -36,6 +36,7 @@ class TextCursor {
 
   /// The next word as a number. Throws malformed_file where it is none.
   float number(std::string_view what);
+  double wide_number(std::string_view what);
   std::uint64_t count(std::string_view what);
   /// Reads `values` numbers into target.
   void numbers(float* target, std::size_t values, std::string_view what);

@@ -10,7 +10,8 @@ namespace {
 
 class VtkReader {
  public:
-  explicit VtkReader(const Source& source) : source_(source), text_(source), arrays_(read_header()) {
+  VtkReader(const Source& source, const ReadOptions& options)
+      : source_(source), options_(options), text_(source), arrays_(read_header()) {
     particles_.format = "vtk";
   }
 
@@ -83,7 +84,7 @@ class VtkReader {
     const std::uint64_t count = text_.count("points");
     const VtkType type = arrays_.type_of(text_.word());
     arrays_.begin();
-    arrays_.read_points(type, count, particles_);
+    arrays_.read_points(type, count, options_, particles_);
     has_points_ = true;
   }
 
@@ -237,6 +238,7 @@ class VtkReader {
   }
 
   Source source_;
+  const ReadOptions& options_;
   TextCursor text_;
   VtkArrays arrays_;
   Particles particles_;
@@ -247,6 +249,6 @@ class VtkReader {
 
 }  // namespace
 
-Particles read_vtk(const Source& source) { return VtkReader(source).read(); }
+Particles read_vtk(const Source& source, const ReadOptions& options) { return VtkReader(source, options).read(); }
 
 }  // namespace meniscus::io

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <utility>
 
+#include "io/text_numbers.h"
+
 namespace meniscus::io {
 namespace {
 
@@ -72,28 +74,41 @@ std::vector<float> VtkArrays::read(VtkType type, std::uint64_t tuples, std::uint
     read_columns(type.scalar, std::endian::big, source_.bytes.data() + text_.at(), size, count, 1, values.data());
     text_.seek(text_.at() + count * size);
   } else {
-    text_.numbers(values.data(), count, what);
+    read_text(std::span<float>(values), what);
   }
   return values;
 }
 
-void VtkArrays::read_points(VtkType type, std::uint64_t count, Particles& particles) {
+template <class T>
+void VtkArrays::read_text(std::span<T> values, std::string_view what) {
+  const TextNumbers read = read_numbers(source_, text_.at(), source_.bytes.size(), values, what);
+  text_.seek(read.end);
+  if (read.count < values.size()) text_.number(what);  // there is none: an error that says so
+}
+
+void VtkArrays::read_points(VtkType type, std::uint64_t count, const ReadOptions& options, Particles& particles) {
   if (type.kind != VtkType::Kind::number) source_.malformed("the points are not numbers", text_.at());
   checked_size(type, count, 3, "points");
   const auto points = static_cast<std::size_t>(count);
-  const std::array<std::vector<float>*, 3> targets{&particles.x, &particles.y, &particles.z};
-  for (std::vector<float>* target : targets) target->resize(points);
   if (binary_) {
     const std::size_t size = size_of(type.scalar);
     const char* first = source_.bytes.data() + text_.at();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      read_columns(type.scalar, std::endian::big, first + axis * size, 3 * size, points, 1, targets[axis]->data());
-    }
+    set_positions(type.scalar, std::endian::big,
+                  {Column{first, 3 * size}, {first + size, 3 * size}, {first + 2 * size, 3 * size}}, points, options,
+                  particles);
     text_.seek(text_.at() + points * 3 * size);
+  } else if (type.scalar == Scalar::float32) {
+    std::vector<float> values(3 * points);
+    read_text(std::span<float>(values), "points");
+    constexpr std::size_t kSize = sizeof(float);
+    const char* first = reinterpret_cast<const char*>(values.data());
+    set_positions(Scalar::float32, std::endian::native,
+                  {Column{first, 3 * kSize}, {first + kSize, 3 * kSize}, {first + 2 * kSize, 3 * kSize}}, points,
+                  options, particles);
   } else {
-    for (std::size_t i = 0; i < points; ++i) {
-      for (std::vector<float>* target : targets) (*target)[i] = text_.number("points");
-    }
+    std::vector<double> values(3 * points);
+    read_text(std::span<double>(values), "points");
+    set_positions(values, options, particles);
   }
 }
 

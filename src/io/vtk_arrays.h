@@ -1,8 +1,8 @@
 /// The arrays of a legacy VTK file, ASCII or binary.
 #pragma once
 
+#include "io/positions.h"
 #include "io/text.h"
-#include "io/values.h"
 
 namespace meniscus::io {
 
@@ -29,13 +29,15 @@ class VtkArrays {
   /// Reads tuples * components values. Text and bits give an empty vector; they are moved over.
   /// @throws Error malformed_file: fewer bytes than the count takes; nothing is allocated then
   std::vector<float> read(VtkType type, std::uint64_t tuples, std::uint64_t components, std::string_view what);
-  /// Reads three-component tuples into three arrays.
-  void read_points(VtkType type, std::uint64_t count, Particles& particles);
+  /// Reads three-component tuples into the positions.
+  void read_points(VtkType type, std::uint64_t count, const ReadOptions& options, Particles& particles);
   /// Moves over an array.
   void skip(VtkType type, std::uint64_t tuples, std::uint64_t components, std::string_view what);
 
  private:
   std::uint64_t checked_size(VtkType type, std::uint64_t tuples, std::uint64_t components, std::string_view what) const;
+  template <class T>
+  void read_text(std::span<T> values, std::string_view what);
   void skip_texts(VtkType type, std::uint64_t values, std::string_view what);
   const Source& source_;
   TextCursor& text_;

@@ -55,6 +55,13 @@ std::vector<Series> readable(const std::vector<std::string>& paths) {
       return true;  // a file that cannot be opened tells nothing
     }
   });
+  // What .pvtu and .pvtp files name as their pieces are no frames.
+  for (const std::string_view kind : {"vtu", "vtp"}) {
+    const auto is_kind = [&](std::string_view before) {
+      return [=](const Series& series) { return series.extension == std::string(before) + std::string(kind); };
+    };
+    if (std::any_of(all.begin(), all.end(), is_kind(".p"))) std::erase_if(all, is_kind("."));
+  }
   return all;
 }
 
@@ -83,6 +90,13 @@ std::string note_of(const Series& chosen, const std::vector<Series>& left_out) {
 }
 
 }  // namespace
+
+std::string likeliest_water(const std::vector<std::string>& paths) {
+  std::vector<Series> each;
+  for (const std::string& path : paths) each.push_back(series_of({path})[0]);
+  const auto best = std::min_element(each.begin(), each.end(), likelier);
+  return best != each.end() ? best->frames[0].path : std::string();
+}
 
 FrameSequence most_likely_water(const std::vector<std::string>& paths) {
   std::vector<Series> all = readable(paths);

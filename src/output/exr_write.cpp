@@ -10,7 +10,7 @@
 
 #include "meniscus/output.h"
 #include "output/exr_channels.h"
-#include "output/temporary_file.h"
+#include "base/temporary_file.h"
 
 namespace meniscus {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "meniscus/output.h"
-#include "output/temporary_file.h"
+#include "base/temporary_file.h"
 
 namespace meniscus {
 namespace {

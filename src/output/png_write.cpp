@@ -5,7 +5,7 @@
 
 #include "meniscus/output.h"
 #include "output/png_rows.h"
-#include "output/temporary_file.h"
+#include "base/temporary_file.h"
 
 namespace meniscus {
 namespace {

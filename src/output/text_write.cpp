@@ -1,5 +1,5 @@
 #include "meniscus/output.h"
-#include "output/temporary_file.h"
+#include "base/temporary_file.h"
 
 namespace meniscus {
 

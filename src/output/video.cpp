@@ -3,7 +3,7 @@
 
 #include "output/ffmpeg.h"
 #include "output/h264.h"
-#include "output/temporary_file.h"
+#include "base/temporary_file.h"
 #include "output/yuv.h"
 
 extern "C" {

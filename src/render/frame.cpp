@@ -6,6 +6,7 @@
 #include "meniscus/render.h"
 #include "particles/chosen.h"
 #include "render/antialias.h"
+#include "render/foam_frames.h"
 #include "render/rainy_frame.h"
 #include "render/show.h"
 #include "render/water_surface.h"
@@ -172,6 +173,8 @@ FramePicture render_frame(const Particles& all, const FrameSettings& asked) {
     refine_pixels(*surface, view, scene, settings.material, optics, pixels, frame.buffers, frame.radiance,
                   water.in_slabs ? std::max(kPixelsAtOnce, frame.radiance.size() / 16) : kPixelsAtOnce);
   }
+  if (!settings.foam.empty() && settings.show == Show::water)
+    draw_foam_over(settings, view, scene, frame.buffers, behind ? &*behind : nullptr, frame.radiance, times);
   if (settings.rain && settings.show == Show::water)
     draw_rain_over(settings, view, scene, frame.buffers, behind ? &*behind : nullptr, frame.radiance, times);
   if (full) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/field_axes.h"
+#include "render/solid_depths.h"
 
 namespace meniscus {
 namespace {
@@ -34,20 +35,7 @@ vec3 middle_of(const View& view, const Ground& ground) {
 
 /// Distances to what is nearer, water or solid.
 Image<float> depths(const View& view, const Scene& scene, const SurfaceBuffers& buffers, const SceneBuffers* solids) {
-  Image<float> depth(view.width, view.height, std::numeric_limits<float>::infinity());
-  if (solids) {
-    depth = solids->depth;
-  } else {
-    const auto width = static_cast<std::size_t>(view.width);
-    parallel_for(static_cast<std::size_t>(view.height), 8, [&](std::size_t begin, std::size_t end) {
-      std::vector<Ray> rays(width);
-      for (std::size_t y = begin; y < end; ++y) {
-        for (std::size_t x = 0; x < width; ++x)
-          rays[x] = view.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
-        scene.distances(rays, {depth.data() + y * width, width});
-      }
-    });
-  }
+  Image<float> depth = solid_depths(view, scene, solids);
   for (std::size_t i = 0; i < depth.size(); ++i)
     if (buffers.coverage[i] > 0) depth[i] = std::min(depth[i], buffers.depth[i]);
   return depth;

@@ -99,6 +99,8 @@ struct Section {
 /// The whole file; the other sections hang on it.
 const Section& file_section();
 const Section& water_section();
+const Section& reading_section();
+const Section& foam_section();
 const Section& waves_section();
 const Section& simulation_section();
 const Section& pour_section();

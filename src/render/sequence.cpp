@@ -7,8 +7,10 @@
 
 #include "meniscus/render.h"
 #include "render/body_placement.h"
+#include "render/foam_frames.h"
 #include "render/frame_memory.h"
 #include "render/rainy_frame.h"
+#include "render/read_ahead.h"
 
 namespace meniscus {
 namespace {
@@ -20,7 +22,13 @@ struct Shot {
   std::size_t place = 0;  ///< which of a body's transforms is meant
 };
 
-/// Numbers in the file names serve if every frame has one and none twice; else frames are counted from 0.
+bool numbered_by_name(const FrameSequence& sequence) {
+  std::set<std::int64_t> numbers;
+  for (const FramePath& frame : sequence.frames)
+    if (frame.number) numbers.insert(*frame.number);
+  return numbers.size() == sequence.frames.size();
+}
+
 std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable) {
   std::vector<Shot> shots;
   if (sequence.frames.size() == 1 && turntable > 0) {
@@ -28,13 +36,9 @@ std::vector<Shot> shots_of(const FrameSequence& sequence, std::size_t turntable)
       shots.push_back({sequence.frames.front(), static_cast<std::int64_t>(i), i});
     return shots;
   }
-  std::set<std::int64_t> numbers;
+  const std::vector<std::int64_t> numbers = picture_numbers(sequence);
   for (const FramePath& frame : sequence.frames)
-    if (frame.number) numbers.insert(*frame.number);
-  const bool by_name = numbers.size() == sequence.frames.size();
-  for (const FramePath& frame : sequence.frames)
-    shots.push_back(
-        {frame, by_name ? *frame.number : static_cast<std::int64_t>(shots.size()), frame.place.value_or(shots.size())});
+    shots.push_back({frame, numbers[shots.size()], frame.place.value_or(shots.size())});
   return shots;
 }
 
@@ -59,11 +63,13 @@ class SequenceRun {
  public:
   SequenceRun(const FrameSequence& sequence, const Survey& survey, const PictureOptions& picture,
               const SequenceOptions& options)
-      : sequence_(sequence), survey_(survey), picture_(picture), options_(options), target_(options.output) {}
+      : sequence_(sequence), survey_(survey), picture_(picture), options_(options), target_(options.output) {
+    sequence_.reading.origin = survey.origin;
+  }
 
-  SequenceReport run(const std::vector<Shot>& shots,
+  SequenceReport run(std::vector<Shot> shots,
                      FunctionRef<void(const FrameReport&, std::size_t, std::size_t)>* on_frame) {
-    check(target_, shots.size());
+    check(target_, options_.further ? std::max<std::size_t>(shots.size(), 2) : shots.size());
     if (target_.is_film() && finished(target_.path())) return all_skipped(shots, on_frame);
     leave_out_ground();
     bodies_.emplace(picture_.bodies);
@@ -71,8 +77,9 @@ class SequenceRun {
     settings_ = settings_of(survey_, picture_);
     settings_->heights = picture_.heights;
     SequenceReport report;
-    for (std::size_t i = 0; i < shots.size(); ++i) {
-      report.frames.push_back(one(shots[i], i, shots.size()));
+    for (std::size_t i = 0; i < shots.size() || add_further(shots); ++i) {
+      const std::optional<FramePath> next = next_to_read(shots, i);
+      report.frames.push_back(one(shots[i], i, shots.size(), next ? &*next : nullptr));
       const FrameReport& frame = report.frames.back();
       report.times.add(frame.times);
       ++(frame.skipped ? report.skipped : frame.problem.empty() ? report.drawn : report.failed);
@@ -115,6 +122,29 @@ class SequenceRun {
                                          "check the pattern: {} stands for the number in the frame's name"});
   }
 
+  /// Waits for frames that come later, if there are to be any.
+  bool add_further(std::vector<Shot>& shots) const {
+    if (!options_.further) return false;
+    const bool by_name = numbered_by_name(sequence_);
+    const std::size_t before = shots.size();
+    for (FramePath& frame : options_.further()) {
+      const auto place = static_cast<std::int64_t>(shots.size());
+      const std::int64_t number = by_name ? frame.number.value_or(place) : place;
+      const std::size_t in_sequence = frame.place.value_or(shots.size());
+      shots.push_back({std::move(frame), number, in_sequence});
+    }
+    return shots.size() > before;
+  }
+
+  /// The frame that will be read after the i-th; none where it is the same or there is none.
+  std::optional<FramePath> next_to_read(const std::vector<Shot>& shots, std::size_t i) const {
+    // With a limit to the memory two frames at once may be one too many.
+    if (survey_.only_frame || picture_.memory_limit > 0) return std::nullopt;
+    for (++i; i < shots.size(); ++i)
+      if (target_.is_film() || picture_.rain || !finished(target_.path_of(shots[i].number))) return shots[i].frame;
+    return std::nullopt;
+  }
+
   bool finished(const std::string& path) const { return options_.resume && std::filesystem::exists(path); }
 
   SequenceReport all_skipped(const std::vector<Shot>& shots,
@@ -132,7 +162,8 @@ class SequenceRun {
     return report;
   }
 
-  FrameReport one(const Shot& shot, std::size_t index, std::size_t count) {
+  /// @param next  what is read while this is drawn; may be null
+  FrameReport one(const Shot& shot, std::size_t index, std::size_t count, const FramePath* next) {
     const auto start = std::chrono::steady_clock::now();
     FrameReport report;
     report.path = shot.frame.path;
@@ -144,13 +175,15 @@ class SequenceRun {
     }
     try {
       if (there)
-        rain_through(*frame_of(shot, index, count, report), *settings_);
+        rain_through(*frame_of(shot, index, count, next, report), *settings_);
       else
-        draw(shot, index, count, report);
+        draw(shot, index, count, next, report);
     } catch (const Error& error) {
       // A picture that cannot be written will not be followed by one that can, nor is a setting better for the next.
       const bool too_much = picture_.memory_limit > 0 && error.code() == ErrorCode::limit_exceeded;
-      if (options_.strict || writing_ || count == 1 || too_much || error.code() == ErrorCode::invalid_argument) throw;
+      if (options_.strict || writing_ || (count == 1 && !options_.further) || too_much ||
+          error.code() == ErrorCode::invalid_argument)
+        throw;
       if (there) return report;
       if (!first_error_) first_error_ = std::current_exception();
       report.problem = error.what();
@@ -162,12 +195,13 @@ class SequenceRun {
 
   /// The particles of a shot; the settings become those of its picture.
   std::shared_ptr<const Particles> frame_of(const Shot& shot, std::size_t index, std::size_t count,
-                                            FrameReport& report) {
-    std::shared_ptr<const Particles> particles = survey_.only_frame;
+                                            const FramePath* next, FrameReport& report) {
+    std::shared_ptr<const Particles> particles = options_.further ? nullptr : survey_.only_frame;
     if (!particles) {
       const StageTimer timer(&report.times, sequence_.body_transforms ? "simulate" : "read");
-      particles = std::make_shared<Particles>(read_frame(sequence_, shot.frame));
+      particles = read(shot.frame);
     }
+    if (next) ahead_.begin(*next);
     if (particles->dropped_non_finite > 0)
       report.notes.push_back(
           fmt::format("{} particles with NaN or infinite positions are left out", particles->dropped_non_finite));
@@ -179,6 +213,13 @@ class SequenceRun {
     const double in_film = static_cast<double>(shot.place) / options_.video.frames_per_second;
     settings_->time = sequence_.foreseen ? particles->time.value_or(in_film) : in_film;
     if (target_.format() == PictureFormat::ply) return particles;
+    if (!picture_.foam.files.empty()) {
+      const StageTimer timer(&report.times, "read");
+      const std::size_t before = report.notes.size();
+      settings_->foam =
+          foam_of_frame(picture_.foam, shot.frame.number.value_or(shot.number), sequence_.reading, report.notes);
+      if (options_.strict && report.notes.size() > before) throw Error(ErrorCode::not_found, report.notes.back());
+    }
     std::vector<std::optional<glm::mat4>> moved;
     if (sequence_.body_transforms) moved = sequence_.body_transforms();
     const std::size_t notes = report.notes.size();
@@ -187,14 +228,26 @@ class SequenceRun {
     return particles;
   }
 
-  void draw(const Shot& shot, std::size_t index, std::size_t count, FrameReport& report) {
-    const std::shared_ptr<const Particles> particles = frame_of(shot, index, count, report);
+  /// A frame that is still being written is read again until it is whole or grows no more.
+  std::shared_ptr<const Particles> read(const FramePath& frame) {
+    while (true) {
+      try {
+        return ahead_.take(frame);
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::malformed_file || !options_.read_again || !options_.read_again(frame)) throw;
+      }
+    }
+  }
+
+  void draw(const Shot& shot, std::size_t index, std::size_t count, const FramePath* next, FrameReport& report) {
+    std::shared_ptr<const Particles> particles = frame_of(shot, index, count, next, report);
     if (target_.format() == PictureFormat::ply) {
       write_surfels(report, *particles);
       return;
     }
     keep_to_limit(report, *particles);
     FramePicture frame = render_frame(*particles, *settings_);
+    particles.reset();
     report.particles = frame.particles;
     if (frame.far_away > 0)
       report.notes.push_back(
@@ -258,11 +311,12 @@ class SequenceRun {
     }
   }
 
-  const FrameSequence& sequence_;
+  FrameSequence sequence_;
   const Survey& survey_;
   PictureOptions picture_;
   const SequenceOptions& options_;
   OutputTarget target_;
+  ReadAhead ahead_{sequence_};
   std::optional<FrameSettings> settings_;
   std::optional<Bodies> bodies_;
   std::optional<VideoWriter> film_;
@@ -272,6 +326,14 @@ class SequenceRun {
 };
 
 }  // namespace
+
+std::vector<std::int64_t> picture_numbers(const FrameSequence& sequence) {
+  const bool by_name = numbered_by_name(sequence);
+  std::vector<std::int64_t> numbers;
+  for (const FramePath& frame : sequence.frames)
+    numbers.push_back(by_name ? *frame.number : static_cast<std::int64_t>(numbers.size()));
+  return numbers;
+}
 
 void check_output(const FrameSequence& sequence, const SequenceOptions& options) {
   check(OutputTarget(options.output), shots_of(sequence, options.turntable).size());

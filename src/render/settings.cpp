@@ -172,6 +172,7 @@ FrameSettings settings_of(const Survey& survey, const PictureOptions& options) {
   settings.antialias = options.antialias;
   settings.legend = options.legend;
   settings.drop_isolated = options.drop_isolated;
+  settings.foam_look = options.foam.look;
   settings.rain = rain_of(survey, options);
   if (has_rain_ground(options)) {
     const float plane = plane_under(*settings.rain);

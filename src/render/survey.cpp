@@ -38,6 +38,9 @@ class Surveyor {
     survey_.frames = frames;
     if (options_.spacing) survey_.spacing = {*options_.spacing, 3, "given"};
     if (spacing_from_ == 0) survey_.up = options_.up ? UpEstimate{*options_.up, "given"} : UpEstimate{};
+    if (const glm::dvec3 from = survey_.origin.value_or(glm::dvec3{0.0}); from != glm::dvec3{0.0})
+      survey_.notes.push_back(fmt::format(
+          "positions, cameras and bodies are counted from ({:.15g}, {:.15g}, {:.15g}) m", from.x, from.y, from.z));
     if (survey_.frames_read + survey_.unreadable.size() < frames)
       survey_.notes.push_back(fmt::format("camera, ground and colours are fitted to {} of {} frames, evenly spread",
                                           survey_.frames_read, frames));
@@ -95,6 +98,7 @@ Survey survey_frames(const FrameSequence& sequence, const SurveyOptions& options
   const std::size_t count = sequence.frames.size();
   if (sequence.foreseen) return survey_of(*sequence.foreseen, count, options);
   Surveyor surveyor(options);
+  FrameSequence same_origin = sequence;
   const std::size_t looked_at = std::min(count, static_cast<std::size_t>(std::max(options.most_frames, 1)));
   std::exception_ptr first_error;
   for (std::size_t i = 0; i < looked_at; ++i) {
@@ -102,7 +106,7 @@ Survey survey_frames(const FrameSequence& sequence, const SurveyOptions& options
     const std::size_t frame = looked_at > 1 ? i * (count - 1) / (looked_at - 1) : 0;
     std::shared_ptr<const Particles> particles;
     try {
-      particles = std::make_shared<Particles>(read_frame(sequence, sequence.frames[frame]));
+      particles = std::make_shared<Particles>(read_frame(same_origin, sequence.frames[frame]));
     } catch (const Error& error) {
       if (options.strict || count == 1) throw;
       surveyor.survey().unreadable.emplace_back(error.what());
@@ -110,6 +114,8 @@ Survey survey_frames(const FrameSequence& sequence, const SurveyOptions& options
     }
     if (particles) {
       surveyor.add(*particles);
+      if (!same_origin.reading.origin && !particles->empty()) same_origin.reading.origin = particles->origin;
+      surveyor.survey().origin = same_origin.reading.origin;
       if (count == 1) surveyor.survey().only_frame = particles;
     }
     if (on_frame) (*on_frame)(i + 1, looked_at);

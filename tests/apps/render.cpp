@@ -126,7 +126,7 @@ TEST(Render, LeavesOutWhatCannotBeReadAndSaysSo) {
   write_three(folder);
   folder.write("in/f_9.xyz", "0 0 0\nbroken\n");
   const Outcome run = render({folder / "in", "-o", folder / "film.mp4"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_NE(run.err.find("f_9.xyz"), std::string::npos);
   EXPECT_TRUE(folder.has("film.mp4"));
   const Outcome strict = render({folder / "in", "-o", folder / "strict.mp4", "--strict"});

@@ -3,7 +3,7 @@
 namespace meniscus {
 namespace {
 
-TEST(Bgeo, ReadsPositionsAndNumbersAndSkipsText) {
+TEST(Bgeo, ReadsPositionsAndNumbersAndTextsAsNumbers) {
   const Scratch scratch;
   const Particles particles = read_particles(scratch.write("f.bgeo", small_bgeo()));
   EXPECT_EQ(particles.format, "bgeo");
@@ -13,9 +13,11 @@ TEST(Bgeo, ReadsPositionsAndNumbersAndSkipsText) {
   ASSERT_NE(particles.find("pair"), nullptr);
   EXPECT_EQ(particles.find("pair")->components, 2);
   EXPECT_EQ(particles.find("pair")->values[13], -6.0f);
-  EXPECT_EQ(particles.find("kind"), nullptr);
+  ASSERT_NE(particles.find("kind"), nullptr);
+  EXPECT_EQ(particles.find("kind")->values, (std::vector<float>{0, 1, 0, 1, 0, 1, 0}));
   ASSERT_EQ(particles.notes.size(), 1u);
-  EXPECT_NE(particles.notes[0].find("kind"), std::string::npos);
+  EXPECT_NE(particles.notes[0].find("'kind' gives its texts as numbers: 0 'water', 1 ''"), std::string::npos)
+      << particles.notes[0];
 }
 
 TEST(Bgeo, IsTheSameCompressedAndUnderAnyName) {
@@ -44,7 +46,7 @@ TEST(Bgeo, OfNoPointsIsAnEmptyFrame) {
   for (const std::string& bytes : {small_bgeo(0), gzipped(small_bgeo(0))}) {
     const Particles particles = read_particles(scratch.write("f.bgeo", bytes));
     EXPECT_TRUE(particles.empty());
-    EXPECT_EQ(particles.attributes.size(), 4u);
+    EXPECT_EQ(particles.attributes.size(), 5u);
   }
 }
 

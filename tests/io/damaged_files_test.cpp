@@ -127,7 +127,7 @@ TEST(Refusal, NamesWhatIsNoFrame) {
     EXPECT_EQ(refused(scratch.write(name, "")).code(), ErrorCode::malformed_file) << name;
   }
   EXPECT_EQ(refused(scratch.write("body.obj", "v 1 2 3\n")).code(), ErrorCode::unsupported);
-  EXPECT_EQ(refused(scratch.write("f.npz", "PK\x03\x04")).code(), ErrorCode::unsupported);
+  EXPECT_EQ(refused(scratch.write("f.npz", "PK\x03\x04")).code(), ErrorCode::malformed_file);
   EXPECT_EQ(refused(scratch.write("f", std::string(100, '\x01'))).code(), ErrorCode::unsupported);
 }
 

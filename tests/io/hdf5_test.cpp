@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "small_frames.h"
+#include "damage.h"
 
 namespace meniscus {
 namespace {
@@ -43,12 +43,85 @@ TEST(Hdf5, TakesObstaclesLastAndReadsCompressedBigEndianArrays) {
   EXPECT_EQ(particles.time, 0.375);
 }
 
-TEST(Hdf5, OfAnotherLayoutIsUnsupported) {
-  EXPECT_EQ(refused(sample("other.hdf5")).code(), ErrorCode::unsupported);
+TEST(Hdf5, ReadsBoundariesWhereTheyAreAskedFor) {
+  ReadOptions options;
+  options.boundaries = true;
+  const Particles particles = read_particles(sample("pysph.hdf5"), options);
+  ASSERT_EQ(particles.size(), 10u);
+  EXPECT_EQ(particles.position(6), small_position(6));
+  EXPECT_EQ(particles.position(8), small_position(1) - 5.0f);
+  ASSERT_NE(particles.find("density"), nullptr);
+  EXPECT_EQ(particles.find("density")->values[8], 1001.0f);
+  EXPECT_EQ(particles.find("gid"), nullptr) << "boundaries have none";
+}
+
+TEST(Hdf5, ReadsSnapshotsOfGadgetAndSwift) {
+  const Particles particles = read_particles(sample("gadget.hdf5"));
+  expect_small(particles, false);
+  EXPECT_EQ(particles.time, 0.375);
+  ASSERT_NE(particles.find("velocity"), nullptr);
+  EXPECT_EQ(particles.find("velocity")->values[4], -1.0f);
+  ASSERT_NE(particles.find("density"), nullptr);
+  EXPECT_EQ(particles.find("ParticleIDs")->values[6], 60.0f);
+  std::string notes;
+  for (const std::string& note : particles.notes) notes += note;
+  EXPECT_NE(notes.find("one of 4 of a snapshot"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("'PartType1' (3)"), std::string::npos) << notes;
+}
+
+TEST(Hdf5, ReadsTheArraysThatOptionsName) {
+  ReadOptions options;
+  for (const char* names : {"/PartType1/Coordinates", "PartType1/Coordinates"}) {
+    options.positions = names;
+    const Particles particles = read_particles(sample("gadget.hdf5"), options);
+    ASSERT_EQ(particles.size(), 3u) << names;
+    EXPECT_EQ(particles.position(1), small_position(1) - 9.0f);
+  }
+  for (const char* names : {"/odd/a,/odd/b,/odd/c", "/odd/a,b,c"}) {
+    options.positions = names;
+    expect_small(read_particles(sample("plain.hdf5"), options), false);
+  }
+  for (const char* names : {"/odd/a,/odd/b", "/odd/a", "/odd/a,b,nothing", "/odd/a,/root", "/nothing", "", "/", ",,"}) {
+    if (*names == '\0') continue;
+    options.positions = names;
+    try {
+      read_particles(sample("plain.hdf5"), options);
+      ADD_FAILURE() << names;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::invalid_argument) << error.what();
+    }
+  }
+}
+
+TEST(Hdf5, ReadsPlainArraysOfAnyTypeAndOrderByTheirNames) {
+  const Particles particles = read_particles(sample("plain.hdf5"));
+  expect_small(particles);
+  EXPECT_EQ(particles.find("half")->values[3], 3.0f);
+  EXPECT_EQ(particles.find("words"), nullptr);
+}
+
+TEST(Hdf5, FollowsLinksInsideTheFileOnly) {
+  const Particles particles = read_particles(sample("links.hdf5"));
+  expect_small(particles, false);
+  EXPECT_EQ(particles.find("outside"), nullptr);
+  ReadOptions options;
+  for (const char* name : {"/outside_positions", "/through/Coordinates", "/through2", "/stored_outside"}) {
+    options.positions = name;
+    EXPECT_EQ(outcome_of(sample("links.hdf5"), options), Outcome::refused) << name;
+  }
+}
+
+TEST(Hdf5, OfAnotherLayoutSaysWhichArraysThereAre) {
+  const Error error = refused(sample("other.hdf5"));
+  EXPECT_EQ(error.code(), ErrorCode::unsupported);
+  EXPECT_NE(error.detail().found.find("/field/pressure (4 x 5 float64)"), std::string::npos) << error.what();
+  EXPECT_NE(error.detail().advice.find("--positions"), std::string::npos);
   const Scratch scratch;
   EXPECT_EQ(refused(scratch.write("f.hdf5.gz", gzipped(bytes_of_file(sample("tiny.hdf5"))))).code(),
             ErrorCode::unsupported);
 }
+
+TEST(Hdf5, OfGroupsInCirclesIsRead) { expect_small(read_particles(sample("circle.hdf5")), false); }
 
 TEST(Hdf5, IsToldFromItsContentUnderAnyName) {
   const Scratch scratch;

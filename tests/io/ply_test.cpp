@@ -32,6 +32,21 @@ TEST(Ply, ReadsText) {
   EXPECT_EQ(particles.find("quality")->values, (std::vector<float>{9, 8}));
 }
 
+TEST(Ply, OfDoublesFarFromTheOriginLosesNothing) {
+  const Scratch scratch;
+  for (const bool is_text : {false, true}) {
+    const std::string head = std::string("ply\nformat ") + (is_text ? "ascii" : "binary_little_endian") +
+                             " 1.0\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n"
+                             "end_header\n";
+    ByteWriter out(std::endian::little);
+    for (const double value : {4e6, 5e6, 6e6, 4e6 + 0.1, 5e6 + 0.2, 6e6 + 0.3}) out.put(value);
+    const Particles particles = read_particles(
+        scratch.write("f.ply", head + (is_text ? "4e6 5e6 6e6\n4000000.1 5000000.2 6000000.3\n" : out.bytes())));
+    ASSERT_EQ(particles.size(), 2u);
+    EXPECT_NEAR(particles.origin.z + static_cast<double>(particles.z[1]), 6e6 + 0.3, 1e-7) << is_text;
+  }
+}
+
 class PlyByVtk : public testing::TestWithParam<const char*> {};
 
 TEST_P(PlyByVtk, IsReadWithLinearColours) {

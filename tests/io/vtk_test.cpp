@@ -86,6 +86,24 @@ TEST(Vtk, ReadsOldVersionsWithTablesAndScalarsOfSeveralComponents) {
   EXPECT_EQ(particles.find("velocity")->values, (std::vector<float>{1, 2, 3, 4, 5, 6}));
 }
 
+TEST(Vtk, ReadsFieldsBeforeAndAfterScalarsAndMovesOverMetadataAnywhere) {
+  const std::string metadata = "METADATA\nINFORMATION 1\nNAME UNITS_LABEL LOCATION vtkDataArray\nDATA POINTS%201\n\n";
+  const Particles particles = read_text(
+      "\xef\xbb\xbf# vtk DataFile Version 5.1\nt\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 2 1 1\n"
+      "FIELD FieldData 2\nTIME 1 1 double\n0.25\nempty 1 0 float\n\nPOINTS 2 float\n1 2 3 4 5 6\n" +
+      metadata + "CELL_DATA 1\nSCALARS of_cells vtkIdType\nLOOKUP_TABLE default\n7\n" + metadata +
+      "POINT_DATA 2\nFIELD f 2\na 1 2 vtkIdType\n8 9\n" + metadata + "b 2 2 vtktypeint64\n1 2 3 4\n" + metadata +
+      "SCALARS c float\nLOOKUP_TABLE default\n5 6\n" + metadata + "FIELD g 1\nd 1 2 unsigned_char\n10 11\n");
+  ASSERT_EQ(particles.size(), 2u);
+  EXPECT_EQ(particles.position(1), vec3(4, 5, 6));
+  EXPECT_EQ(particles.time, 0.25);
+  EXPECT_EQ(particles.find("a")->values, (std::vector<float>{8, 9}));
+  EXPECT_EQ(particles.find("b")->values, (std::vector<float>{1, 2, 3, 4}));
+  EXPECT_EQ(particles.find("c")->values, (std::vector<float>{5, 6}));
+  EXPECT_EQ(particles.find("d")->values, (std::vector<float>{10, 11}));
+  EXPECT_EQ(particles.find("of_cells"), nullptr);
+}
+
 TEST(Vtk, ReadsBinaryLookupTables) {
   ByteWriter out;
   out.text("# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS 1 float\n").put(1.f).put(2.f).put(3.f);

@@ -160,7 +160,34 @@ def write_hdf5():
         for key, column in zip("xyz", POSITION.T):
             file[f"particles/fluid/arrays/{key}"] = column.astype(np.float32)
     with h5py.File(HERE / "other.hdf5", "w", libver="latest") as file:
-        file["PartType0/Coordinates"] = POSITION
+        file["field/pressure"] = np.ones((4, 5))
+        file["field/force"] = np.ones((4, 3))
+        file["wind/speed"] = np.ones((2, 3))
+    with h5py.File(HERE / "gadget.hdf5", "w", libver="latest") as file:
+        file.create_group("Header").attrs.update({"Time": np.array([TIME]), "NumFilesPerSnapshot": 4})
+        file["PartType0/Coordinates"], file["PartType0/Velocities"] = POSITION, VELOCITY.astype("f4")
+        file["PartType0/Density"], file["PartType0/ParticleIDs"] = DENSITY, IDS.astype("u8")
+        file["PartType1/Coordinates"] = POSITION[:3] - 9
+    with h5py.File(HERE / "plain.hdf5", "w", libver="latest") as file:
+        file["Position"] = POSITION.astype(">f8")
+        file["vel"] = VELOCITY.astype("f2")
+        file["rho"], file["half"] = DENSITY.astype(">i2"), np.arange(COUNT).astype("f2")
+        file["words"] = np.array(["a"] * COUNT, dtype="S1")
+        file["root"] = np.ones(3)
+        for key, column in zip("abc", POSITION.T):
+            file["odd/" + key] = column
+    with h5py.File(HERE / "links.hdf5", "w", libver="latest") as file:
+        file["hidden/data"] = POSITION
+        file["water/pos"] = h5py.SoftLink("/hidden/data")
+        file["water/outside"] = h5py.ExternalLink("tiny.hdf5", "/particles/fluid/arrays/x")
+        file["outside_positions"] = h5py.ExternalLink("gadget.hdf5", "/PartType0/Coordinates")
+        file["through"] = h5py.ExternalLink("gadget.hdf5", "/PartType0")
+        file["through2"] = h5py.SoftLink("/through/Coordinates")
+        file.create_dataset("stored_outside", (3, 3), "f8", external=[("elsewhere.bin", 0, 72)])
+    with h5py.File(HERE / "circle.hdf5", "w", libver="latest") as file:
+        file["a/b/c/points"] = POSITION
+        file["a/b/again"] = file["a"]
+        file["a/soft"] = h5py.SoftLink("/a/b")
     with h5py.File(HERE / "absurd.hdf5", "w", libver="latest") as file:
         # Claims 2^40 values, stores none.
         for key in "xyz":

@@ -1,4 +1,4 @@
-#include "output/temporary_file.h"
+#include "base/temporary_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
