@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "estimate_text.h"
+#include "freed_memory.h"
 #include "json.h"
 #include "meniscus/render.h"
 #include "picture_options.h"
@@ -143,6 +144,7 @@ void render(RenderArguments& arguments) {
   }
   check_memory(sequence, picture, arguments.sequence, made_particles);
   check_output(sequence, arguments.sequence);
+  if (arguments.memory_limit > 0) return_freed_memory();
   hold_memory_below(arguments.memory_limit);
   if (!arguments.report_path.empty()) write_text(arguments.report_path, "{}\n");
 
