@@ -10,6 +10,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "surface/moments-inl.h"
 #include "surface/packet_sums-inl.h"
 #include "surface/vector3-inl.h"
 
@@ -17,11 +18,6 @@ HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
 namespace {
-
-/// A symmetric matrix a lane.
-struct Symmetric3V {
-  Vec xx, yy, zz, xy, xz, yz;
-};
 
 struct LeastEigenV {
   Vec3V direction;      ///< unit; zero where the two lesser eigenvalues are equal
@@ -71,120 +67,6 @@ HWY_INLINE LeastEigenV least_eigenvector(Symmetric3V c) {
   result.direction = scaled(v, hn::IfThenElseZero(hn::Gt(size2, hn::Set(d, 1e-18f)),
                                                   hn::Div(one, hn::Sqrt(hn::Max(size2, hn::Set(d, 1e-30f))))));
   return result;
-}
-
-/// Particles of a list relative to an origin near them and in units of R, with the products that sums need.
-struct MomentList {
-  static constexpr std::size_t kCapacity = 512;
-  enum Array { x, y, z, size2, xx, yy, zz, xy, xz, yz, per2, volume, kArrays };
-  alignas(64) float values[kArrays][kCapacity + kPacket];
-  std::size_t count = 0;
-};
-
-/// The sums of [Xiao2017] eq. 2 to 4, about the list's origin.
-struct MomentSums {
-  Vec3V gradient, mean;
-  Vec slopes, weights;
-  Symmetric3V squares;
-};
-
-/// 1 / sqrt(v) for weights: to 2^-14 where one instruction gives that, which turns normals by less than 1e-4.
-HWY_INLINE Vec weight_root(Vec v) {
-#if HWY_TARGET <= HWY_AVX3
-  return hn::ApproximateReciprocalSqrt(v);
-#else
-  return reciprocal_root(v);
-#endif
-}
-
-/// Adds a list's particles to the sums at points `p`. With sizes, a particle counts by its volume s_j^3 and to its
-/// own radius R_j.
-template <bool kSizes>
-HWY_INLINE void add_moments(const MomentList& list, Vec3V p, MomentSums& sums) {
-  const Tag d;
-  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f), least = hn::Set(d, 1e-6f), p2 = dot(p, p);
-  const Vec3V twice = scaled(p, hn::Set(d, -2.0f));
-  MomentSums s = sums;
-  for (std::size_t j = 0; j < list.count; ++j) {
-    const auto of = [&](MomentList::Array array) { return hn::Set(d, list.values[array][j]); };
-    const Vec x = of(MomentList::x), y = of(MomentList::y), z = of(MomentList::z);
-    Vec q2 = hn::MulAdd(twice.x, x, hn::MulAdd(twice.y, y, hn::MulAdd(twice.z, z, hn::Add(p2, of(MomentList::size2)))));
-    if (kSizes) q2 = hn::Mul(q2, of(MomentList::per2));
-    q2 = hn::Min(hn::Max(q2, least), one);
-    const Vec per_q = weight_root(q2);
-    const Vec q = hn::Mul(q2, per_q);
-    // Eq. 2 with the spiky kernel: the gradient's size is proportional to (1 - q)^2.
-    const Vec rest = hn::Max(hn::Sub(one, q), zero);
-    Vec slope = hn::Mul(hn::Mul(rest, rest), per_q);
-    // Eq. 3 and 4 with W = 1 - q^3.
-    Vec w = hn::Max(hn::NegMulAdd(q2, q, one), zero);
-    if (kSizes) {
-      slope = hn::Mul(slope, of(MomentList::per2));
-      w = hn::Mul(w, of(MomentList::volume));
-    }
-    s.slopes = hn::Add(s.slopes, slope);
-    s.gradient = {hn::MulAdd(slope, x, s.gradient.x), hn::MulAdd(slope, y, s.gradient.y),
-                  hn::MulAdd(slope, z, s.gradient.z)};
-    s.weights = hn::Add(s.weights, w);
-    s.mean = {hn::MulAdd(w, x, s.mean.x), hn::MulAdd(w, y, s.mean.y), hn::MulAdd(w, z, s.mean.z)};
-    s.squares.xx = hn::MulAdd(w, of(MomentList::xx), s.squares.xx);
-    s.squares.yy = hn::MulAdd(w, of(MomentList::yy), s.squares.yy);
-    s.squares.zz = hn::MulAdd(w, of(MomentList::zz), s.squares.zz);
-    s.squares.xy = hn::MulAdd(w, of(MomentList::xy), s.squares.xy);
-    s.squares.xz = hn::MulAdd(w, of(MomentList::xz), s.squares.xz);
-    s.squares.yz = hn::MulAdd(w, of(MomentList::yz), s.squares.yz);
-  }
-  sums = s;
-}
-
-/// Sixteen points and the box around them, relative to an origin and in units of R.
-struct MomentPoints {
-  vec3 origin;
-  float per_radius;
-  vec3 low, high;  ///< particles farther than R from this box are passed over
-};
-
-/// Fills `moments` from particle `first` on until it is full; returns the first particle that is left.
-template <bool kSizes>
-HWY_INLINE std::size_t fill_moments(const PacketList& list, const MomentPoints& at, std::size_t first,
-                                    MomentList& moments) {
-  const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  const Vec3V origin = set(at.origin), low = set(at.low), high = set(at.high);
-  const Vec per_radius = hn::Set(d, at.per_radius), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  const auto outside = [&](Vec v, Vec from, Vec to) {
-    return hn::Max(hn::Max(hn::Sub(from, v), hn::Sub(v, to)), zero);
-  };
-  moments.count = 0;
-  for (; first < list.count && moments.count + lanes <= MomentList::kCapacity; first += lanes) {
-    const Vec x = hn::Mul(hn::Sub(hn::LoadU(d, list.x.data() + first), origin.x), per_radius);
-    const Vec y = hn::Mul(hn::Sub(hn::LoadU(d, list.y.data() + first), origin.y), per_radius);
-    const Vec z = hn::Mul(hn::Sub(hn::LoadU(d, list.z.data() + first), origin.z), per_radius);
-    const Vec3V off{outside(x, low.x, high.x), outside(y, low.y, high.y), outside(z, low.z, high.z)};
-    Vec per = one;
-    if (kSizes) per = hn::Div(hn::LoadU(d, list.per_normal_radius.data() + first), per_radius);
-    const Vec per2 = hn::Mul(per, per);
-    const auto near = hn::And(hn::Lt(hn::Mul(dot(off, off), per2), one), hn::FirstN(d, list.count - first));
-    const Vec squares[] = {x,
-                           y,
-                           z,
-                           hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))),
-                           hn::Mul(x, x),
-                           hn::Mul(y, y),
-                           hn::Mul(z, z),
-                           hn::Mul(x, y),
-                           hn::Mul(x, z),
-                           hn::Mul(y, z)};
-    for (int a = 0; a < MomentList::per2; ++a)
-      hn::StoreU(hn::Compress(squares[a], near), d, moments.values[a] + moments.count);
-    if (kSizes) {
-      hn::StoreU(hn::Compress(per2, near), d, moments.values[MomentList::per2] + moments.count);
-      hn::StoreU(hn::Compress(hn::Div(one, hn::Mul(per2, per)), near), d,
-                 moments.values[MomentList::volume] + moments.count);
-    }
-    moments.count += hn::CountTrue(d, near);
-  }
-  return first;
 }
 
 /// Particles within their radius of each point.
@@ -244,39 +126,58 @@ HWY_INLINE Vec3V blended_normal(const RaycastOptions& options, const MomentSums&
   return normalized(combined(scaled(normal, hn::Sub(one, w)), hn::Mul(w, sign), eigen.direction));
 }
 
-/// Normals of [Xiao2017] eq. 2 to 6 at sixteen points from those particles of a list that lie near `at`'s box. The
-/// points that count lie in that box.
+/// Whether a list is gone through for each point of its own, particles side by side, or once for all of them, points
+/// side by side. In units of half a cycle, measured with vectors of sixteen.
+HWY_INLINE bool one_by_one(std::size_t particles, int points) {
+  constexpr std::size_t kAcross = 26, kLookedAt = 1, kOfPoint = 600;
+  return kAcross * particles > static_cast<std::size_t>(points) * (kLookedAt * particles + kOfPoint);
+}
+
+/// Normals of [Xiao2017] eq. 2 to 6 at the points of a mask, which lie in `at`'s box, from those particles of a list
+/// that lie near it; normals of other lanes mean nothing.
 template <bool kSizes>
 HWY_NOINLINE void normals_near(const RaycastField& field, const PacketList& list, const MomentPoints& at,
-                               const PacketPoints& points, const PacketPoints& towards, PacketPoints& normals) {
+                               const PacketPoints& points, PacketMask mask, const PacketPoints& towards,
+                               PacketPoints& normals) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  thread_local MomentList moments;
-  const Vec zero = hn::Zero(d), per_radius = hn::Set(d, at.per_radius);
-  const Vec3V origin = set(at.origin), nothing{zero, zero, zero};
-  MomentSums sums[kPacket];  // as many as vectors make a packet
-  Vec3V p[kPacket];
-  for (int l = 0, v = 0; l < kPacket; l += lanes, ++v) {
-    p[v] = {hn::Mul(hn::Sub(hn::Load(d, points.x + l), origin.x), per_radius),
-            hn::Mul(hn::Sub(hn::Load(d, points.y + l), origin.y), per_radius),
-            hn::Mul(hn::Sub(hn::Load(d, points.z + l), origin.z), per_radius)};
-    sums[v] = {nothing, nothing, zero, zero, {zero, zero, zero, zero, zero, zero}};
-  }
-  for (std::size_t first = 0; first < list.count;) {
-    first = fill_moments<kSizes>(list, at, first, moments);
-    for (int v = 0; v * lanes < kPacket; ++v) add_moments<kSizes>(moments, p[v], sums[v]);
-  }
-  for (int l = 0, v = 0; l < kPacket; l += lanes, ++v) {
-    // No weight is above one: a sum above four has five neighbours.
-    const Vec fewest = hn::Set(d, static_cast<float>(kFewestNeighboursForPca));
-    auto enough = hn::Gt(sums[v].weights, hn::Sub(fewest, hn::Set(d, 1.0f)));
-    if (kSizes || !hn::AllTrue(d, enough)) {
-      alignas(64) float neighbours[kPacket];
-      count_neighbours<kSizes>(list, at.per_radius, points, l, neighbours);
-      enough = hn::Ge(hn::Load(d, neighbours), fewest);
+  thread_local NearList near;
+  thread_local PointList own;
+  find_near<kSizes>(list, at, near);
+  const bool by_points = one_by_one(near.count, __builtin_popcount(mask));
+  PointSums sums;
+  if (by_points)
+    for (PacketMask left = mask; left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      const vec3 p = at.per_radius * (vec3{points.x[l], points.y[l], points.z[l]} - at.origin);
+      sums_at_point<kSizes>(near, p, own, l, sums);
     }
+  else
+    multiply(near);
+  const Vec per_radius = hn::Set(d, at.per_radius), zero = hn::Zero(d);
+  const Vec3V origin = set(at.origin);
+  for (int l = 0; l < kPacket; l += lanes) {
+    if ((mask >> l & ((1u << lanes) - 1u)) == 0) continue;
+    const Vec fewest = hn::Set(d, static_cast<float>(kFewestNeighboursForPca));
     const Vec3V out{hn::Load(d, towards.x + l), hn::Load(d, towards.y + l), hn::Load(d, towards.z + l)};
-    const Vec3V normal = blended_normal(field.options, sums[v], p[v], out, enough);
+    Vec3V normal;
+    if (by_points) {
+      const auto enough = hn::Ge(hn::Load(d, sums.neighbours + l), fewest);
+      normal = blended_normal(field.options, sums.at(l), {zero, zero, zero}, out, enough);
+    } else {
+      const Vec3V p{hn::Mul(hn::Sub(hn::Load(d, points.x + l), origin.x), per_radius),
+                    hn::Mul(hn::Sub(hn::Load(d, points.y + l), origin.y), per_radius),
+                    hn::Mul(hn::Sub(hn::Load(d, points.z + l), origin.z), per_radius)};
+      const MomentSums across = sums_across_points<kSizes>(near, p);
+      // No weight is above one: a sum above four, and what rounding adds, has five neighbours.
+      auto enough = hn::Gt(across.weights, hn::Sub(fewest, hn::Set(d, 0.9f)));
+      if (kSizes || !hn::AllTrue(d, enough)) {
+        alignas(64) float neighbours[kPacket];
+        count_neighbours<kSizes>(list, at.per_radius, points, l, neighbours);
+        enough = hn::Ge(hn::Load(d, neighbours), fewest);
+      }
+      normal = blended_normal(field.options, across, p, out, enough);
+    }
     hn::Store(normal.x, d, normals.x + l);
     hn::Store(normal.y, d, normals.y + l);
     hn::Store(normal.z, d, normals.z + l);
@@ -284,11 +185,12 @@ HWY_NOINLINE void normals_near(const RaycastField& field, const PacketList& list
 }
 
 HWY_INLINE void normals_near(const RaycastField& field, const PacketList& list, const MomentPoints& at,
-                             const PacketPoints& points, const PacketPoints& towards, PacketPoints& normals) {
+                             const PacketPoints& points, PacketMask mask, const PacketPoints& towards,
+                             PacketPoints& normals) {
   if (field.has_sizes())
-    normals_near<true>(field, list, at, points, towards, normals);
+    normals_near<true>(field, list, at, points, mask, towards, normals);
   else
-    normals_near<false>(field, list, at, points, towards, normals);
+    normals_near<false>(field, list, at, points, mask, towards, normals);
 }
 
 /// The same from all of a list that was gathered around some of the points; normals elsewhere mean nothing.
@@ -299,8 +201,9 @@ HWY_MAYBE_UNUSED HWY_NOINLINE void normals_from_list(const RaycastField& field, 
   const std::size_t middle = list.count / 2;
   const vec3 origin = list.count == 0 ? vec3{points.x[0], points.y[0], points.z[0]}
                                       : vec3{list.x.data()[middle], list.y.data()[middle], list.z.data()[middle]};
-  normals_near(field, list, {origin, 1.0f / field.options.normal_radius, vec3{-kFar}, vec3{kFar}}, points, towards,
-               normals);
+  constexpr PacketMask kAll = (1u << kPacket) - 1u;
+  normals_near(field, list, {origin, 1.0f / field.options.normal_radius, vec3{-kFar}, vec3{kFar}}, points, kAll,
+               towards, normals);
 }
 
 }  // namespace

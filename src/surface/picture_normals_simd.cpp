@@ -24,6 +24,36 @@ namespace {
 /// their difference (on a ball it is 0.42 at the rim, where normals are 6 degrees apart) and this share of the reach.
 constexpr float kDepthsBent = 0.5f, kDepthsUneven = 0.05f;
 
+/// Fills a list with the particles within the normals' reach of a box, in their sorted order. Of the list's arrays only
+/// positions are filled, where particles are alike.
+HWY_NOINLINE void gather_near(const RaycastField& field, const Bounds& box, PacketList& list) {
+  const float radius = field.options.normal_radius;
+  if (HWY_UNLIKELY(field.has_sizes())) return gather_sizes(field, box.low, box.high, radius, false, list);
+  const Tag d;
+  const std::size_t lanes = hn::Lanes(d);
+  const BandGrid& grid = field.grid;
+  const Vec3V low = set(box.low), high = set(box.high);
+  const Vec radius2 = hn::Set(d, radius * radius), zero = hn::Zero(d);
+  const auto outside = [&](Vec v, Vec from, Vec to)
+                           HWY_ATTR { return hn::Max(hn::Max(hn::Sub(from, v), hn::Sub(v, to)), zero); };
+  std::size_t count = 0;
+  grid.for_each_run(box.low - radius, box.high + radius, [&](std::size_t begin, std::size_t end) HWY_ATTR {
+    list.reserve(count + (end - begin) + 2 * kPacket, false);
+    for (std::size_t i = begin; i < end; i += lanes) {
+      const Vec x = hn::LoadU(d, grid.x() + i), y = hn::LoadU(d, grid.y() + i), z = hn::LoadU(d, grid.z() + i);
+      const Vec3V off{outside(x, low.x, high.x), outside(y, low.y, high.y), outside(z, low.z, high.z)};
+      // Lanes past the run's end belong to other cells, which may be part of the box and come again.
+      const auto near = hn::And(hn::Lt(dot(off, off), radius2), hn::FirstN(d, end - i));
+      hn::StoreU(hn::Compress(x, near), d, list.x.data() + count);
+      hn::StoreU(hn::Compress(y, near), d, list.y.data() + count);
+      hn::StoreU(hn::Compress(z, near), d, list.z.data() + count);
+      count += hn::CountTrue(d, near);
+    }
+    list.count = count;  // that reserve() keeps
+  });
+  list.count = count;
+}
+
 /// The points seen at up to kMost pixels, in packets; each packet's free lanes repeat its first.
 class PixelNormals {
  public:
@@ -36,26 +66,41 @@ class PixelNormals {
     take(pixels);
     if (count_ == 0) return;
     set_points();
-    const Bounds all = box(0, count_);
-    // A list around all serves all packets, unless that would hold far more than each of them needs.
-    const vec3 extent = all.extent();
-    const bool shared = std::max({extent.x, extent.y, extent.z}) < kSharedBox * field_.options.spacing;
-    if (shared) gather(all);
-    for (std::size_t first = 0; first < count_; first += kPacket) {
-      const std::size_t last = std::min(first + kPacket, count_);
-      PacketPoints found;
-      if (shared) {
-        normals_of_packet(first, box(first, last), found);
-        for (std::size_t i = first; i < last; ++i) set_normal(i, first, found);
-      } else {
-        run_by_clusters(first, last);
-      }
-    }
+    run_points(0, count_);
   }
 
  private:
-  static constexpr float kSharedBox = 12.0f;  ///< spacings
-  static constexpr float kCluster = 2.0f;     ///< spacings
+  static constexpr std::size_t kTogether = kPacket;  ///< points that share what is picked from a list
+  static constexpr float kSharedSpace = 4500.0f;     ///< cubic spacings
+  static constexpr float kCluster = 2.0f;            ///< spacings
+
+  /// A list around all serves all of these points, unless that would hold far more than each of them needs.
+  void run_points(std::size_t first, std::size_t last) {
+    const Bounds all = box(first, last);
+    const vec3 space = (all.extent() + 2.0f * field_.options.normal_radius) / field_.options.spacing;
+    if (space.x * space.y * space.z < kSharedSpace) {
+      gather_near(field_, all, list());
+      for (; first < last; first += kTogether) run_near(first, std::min(first + kTogether, last));
+    } else if (last - first > kTogether) {
+      const std::size_t groups = (last - first + kTogether - 1) / kTogether;
+      const std::size_t middle = first + (groups + 1) / 2 * kTogether;
+      run_points(first, middle);
+      run_points(middle, last);
+    } else {
+      run_by_clusters(first, last);
+    }
+  }
+
+  void run_near(std::size_t first, std::size_t last) {
+    PacketPoints found;
+    normals_of_group(first, bits(first, last), box(first, last), found);
+    for (std::size_t i = first; i < last; ++i) set_normal(i, found);
+  }
+
+  /// Lanes of consecutive points of one packet.
+  static PacketMask bits(std::size_t first, std::size_t last) {
+    return static_cast<PacketMask>((1ull << (last - first)) - 1) << (first % kPacket);
+  }
 
   void take(std::span<const Pixel> pixels) {
     count_ = 0;
@@ -123,33 +168,31 @@ class PixelNormals {
     return result;
   }
 
-  void gather(const Bounds& around) {
-    gather_list(field_, around.low, around.high, field_.options.normal_radius, false, list());
-  }
-
   static PacketList& list() {
     thread_local PacketList kept;
     return kept;
   }
 
-  void normals_of_packet(std::size_t first, const Bounds& around, PacketPoints& found) {
+  /// @param group  lanes of the packet that point `first` belongs to
+  void normals_of_group(std::size_t first, PacketMask group, const Bounds& around, PacketPoints& found) {
     const float per_radius = 1.0f / field_.options.normal_radius;
     const vec3 origin = 0.5f * (around.low + around.high);
     normals_near(field_, list(),
                  {origin, per_radius, per_radius * (around.low - origin), per_radius * (around.high - origin)},
-                 points_[first / kPacket], towards_[first / kPacket], found);
+                 points_[first / kPacket], group, towards_[first / kPacket], found);
   }
 
   /// Points that lie apart have lists of their own.
   void run_by_clusters(std::size_t first, std::size_t last) {
     const float reach = kCluster * field_.options.spacing;
-    PacketMask left = static_cast<PacketMask>((1ull << (last - first)) - 1);
+    const std::size_t base = first / kPacket * kPacket;
+    PacketMask left = bits(first, last);
     while (left != 0) {
-      const vec3 seed = point(first + static_cast<std::size_t>(__builtin_ctz(left)));
+      const vec3 seed = point(base + static_cast<std::size_t>(__builtin_ctz(left)));
       Bounds around;
       PacketMask group = 0;
       for (PacketMask m = left; m != 0; m &= m - 1) {
-        const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(m));
+        const std::size_t i = base + static_cast<std::size_t>(__builtin_ctz(m));
         const vec3 off = point(i) - seed;
         if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) > reach) continue;
         around.add(point(i));
@@ -157,19 +200,19 @@ class PixelNormals {
       }
       group |= left & (~left + 1);  // the seed itself, whatever its coordinates are
       PacketPoints found;
-      gather(around);
-      normals_of_packet(first, around, found);
+      gather_near(field_, around, list());
+      normals_of_group(base, group, around, found);
       for (PacketMask m = group; m != 0; m &= m - 1)
-        set_normal(first + static_cast<std::size_t>(__builtin_ctz(m)), first, found);
+        set_normal(base + static_cast<std::size_t>(__builtin_ctz(m)), found);
       left &= ~group;
     }
   }
 
-  void set_normal(std::size_t i, std::size_t first, const PacketPoints& found) {
+  void set_normal(std::size_t i, const PacketPoints& found) {
     // A ray that starts in the water meets the face that the view's plane cuts.
     const bool cut = depth_[i] <= 0.0f && !buffers_.eye_in_water;
-    const PacketPoints& from = cut ? towards_[first / kPacket] : found;
-    const std::size_t l = i - first;
+    const PacketPoints& from = cut ? towards_[i / kPacket] : found;
+    const std::size_t l = i % kPacket;
     buffers_.normal(pixels_[i].x, pixels_[i].y) = {from.x[l], from.y[l], from.z[l]};
   }
 
