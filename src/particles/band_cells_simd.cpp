@@ -48,21 +48,43 @@ HWY_INLINE hn::Vec<IntTag> cells_of(const float* HWY_RESTRICT values, float low,
   return hn::ConvertTo(IntTag(), hn::Mul(hn::Sub(hn::LoadU(d, values), hn::Set(d, low)), hn::Set(d, per_cell)));
 }
 
+/// Quarters of them, four of which are a cell to the last bit.
+HWY_INLINE hn::Vec<IntTag> quarters_of(const float* HWY_RESTRICT values, float low, float per_cell) {
+  const Tag d;
+  const auto cells = hn::Mul(hn::Sub(hn::LoadU(d, values), hn::Set(d, low)), hn::Set(d, per_cell));
+  return hn::ConvertTo(IntTag(), hn::Mul(cells, hn::Set(d, 4.0f)));
+}
+
 class DenseKeys {
  public:
   explicit DenseKeys(const BandCells& cells) : cells_(cells) {}
 
   HWY_INLINE hn::Vec<WordTag> vector(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
                                      const float* HWY_RESTRICT z) const {
-    const IntTag d;
-    const auto across = hn::Set(d, cells_.blocks_x), down = hn::Set(d, cells_.blocks_y), in_block = hn::Set(d, 7);
-    const auto cx = cells_of(x, cells_.low.x, cells_.per_cell), cy = cells_of(y, cells_.low.y, cells_.per_cell),
-               cz = cells_of(z, cells_.low.z, cells_.per_cell);
-    const auto block = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ShiftRight<3>(cz), down), hn::ShiftRight<3>(cy)), across),
-                               hn::ShiftRight<3>(cx));
-    const auto cell = hn::Or(hn::ShiftLeft<6>(hn::And(cz, in_block)),
-                             hn::Or(hn::ShiftLeft<3>(hn::And(cy, in_block)), hn::And(cx, in_block)));
-    return hn::BitCast(WordTag(), hn::Or(hn::ShiftLeft<9>(block), cell));
+    return of_cells(cells_of(x, cells_.low.x, cells_.per_cell), cells_of(y, cells_.low.y, cells_.per_cell),
+                    cells_of(z, cells_.low.z, cells_.per_cell));
+  }
+
+  /// With the bits of patches.
+  HWY_INLINE hn::Vec<WordTag> vector(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
+                                     const float* HWY_RESTRICT z, hn::Vec<WordTag>& patches) const {
+    const WordTag d;
+    const auto qx = quarters_of(x, cells_.low.x, cells_.per_cell), qy = quarters_of(y, cells_.low.y, cells_.per_cell),
+               qz = quarters_of(z, cells_.low.z, cells_.per_cell);
+    // A cell's first quarter counts as 0 or 4, which leaves the patches of a cell apart as they are.
+    const auto sum = hn::Add(hn::Add(qx, qz), hn::ShiftLeft<1>(hn::Add(qy, qz)));
+    const auto patch = hn::And(hn::BitCast(d, sum), hn::Set(d, 7u));
+    patches = hn::Shl(hn::Set(d, 1u << kBandCountBits), patch);
+    return of_cells(hn::ShiftRight<2>(qx), hn::ShiftRight<2>(qy), hn::ShiftRight<2>(qz));
+  }
+
+  std::uint32_t one(float x, float y, float z, std::uint32_t& patches) const {
+    const auto quarter = [&](float value, float low) {
+      return static_cast<std::uint32_t>((value - low) * cells_.per_cell * 4.0f);
+    };
+    patches = 1u << (kBandCountBits +
+                     band_patch(quarter(x, cells_.low.x), quarter(y, cells_.low.y), quarter(z, cells_.low.z)));
+    return one(x, y, z);
   }
 
   std::uint32_t one(float x, float y, float z) const {
@@ -77,6 +99,16 @@ class DenseKeys {
   }
 
  private:
+  HWY_INLINE hn::Vec<WordTag> of_cells(hn::Vec<IntTag> cx, hn::Vec<IntTag> cy, hn::Vec<IntTag> cz) const {
+    const IntTag d;
+    const auto across = hn::Set(d, cells_.blocks_x), down = hn::Set(d, cells_.blocks_y), in_block = hn::Set(d, 7);
+    const auto block = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ShiftRight<3>(cz), down), hn::ShiftRight<3>(cy)), across),
+                               hn::ShiftRight<3>(cx));
+    const auto cell = hn::Or(hn::ShiftLeft<6>(hn::And(cz, in_block)),
+                             hn::Or(hn::ShiftLeft<3>(hn::And(cy, in_block)), hn::And(cx, in_block)));
+    return hn::BitCast(WordTag(), hn::Or(hn::ShiftLeft<9>(block), cell));
+  }
+
   BandCells cells_;
 };
 
@@ -99,6 +131,21 @@ void FindDenseKeys(const BandCells& cells, const float* HWY_RESTRICT x, const fl
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) hn::StoreU(keys_of.vector(x + i, y + i, z + i), WordTag(), keys + i);
   for (; i < count; ++i) keys[i] = keys_of.one(x[i], y[i], z[i]);
+}
+
+void FindDenseKeysAndPatches(const BandCells& cells, const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
+                             const float* HWY_RESTRICT z, std::size_t count, std::uint32_t* HWY_RESTRICT keys,
+                             std::uint32_t* HWY_RESTRICT patches) {
+  const WordTag d;
+  const DenseKeys keys_of(cells);
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    auto bits = hn::Zero(d);
+    hn::StoreU(keys_of.vector(x + i, y + i, z + i, bits), d, keys + i);
+    hn::StoreU(bits, d, patches + i);
+  }
+  for (; i < count; ++i) keys[i] = keys_of.one(x[i], y[i], z[i], patches[i]);
 }
 
 std::size_t FindKeptKeys(const BandCells& cells, const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
@@ -141,17 +188,19 @@ std::size_t FindKeptKeys(const BandCells& cells, const float* HWY_RESTRICT x, co
   return kept;
 }
 
-void FindCellCoordinates(float low, float per_cell, const float* HWY_RESTRICT values, std::size_t count,
-                         std::int32_t* HWY_RESTRICT cells) {
+void FindQuarters(float low, float per_cell, const float* HWY_RESTRICT values, std::size_t count,
+                  std::int32_t* HWY_RESTRICT quarters) {
   const IntTag di;
   const std::size_t lanes = hn::Lanes(di);
   std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) hn::StoreU(cells_of(values + i, low, per_cell), di, cells + i);
-  for (; i < count; ++i) cells[i] = static_cast<std::int32_t>((values[i] - low) * per_cell);
+  for (; i + lanes <= count; i += lanes) hn::StoreU(quarters_of(values + i, low, per_cell), di, quarters + i);
+  for (; i < count; ++i) quarters[i] = static_cast<std::int32_t>((values[i] - low) * per_cell * 4.0f);
 }
 
-void FindAtLeast(const std::uint32_t* HWY_RESTRICT counts, std::uint32_t least, std::uint64_t* HWY_RESTRICT bits) {
+void FindWellFilled(const std::uint32_t* HWY_RESTRICT counts, std::uint32_t least,
+                    const std::uint32_t* HWY_RESTRICT patches, std::uint32_t fewest, std::uint64_t* HWY_RESTRICT bits) {
   const WordTag d;
+  const auto one = hn::Set(d, 1u);
   const std::size_t lanes = hn::Lanes(d);
   const auto enough = hn::Set(d, least);
   for (std::size_t word = 0; word < 8; ++word) {
@@ -159,7 +208,9 @@ void FindAtLeast(const std::uint32_t* HWY_RESTRICT counts, std::uint32_t least, 
     for (std::size_t k = 0; k < 64; k += lanes) {
       std::uint8_t mask[8] = {};
       const auto here = hn::LoadU(d, counts + 64 * word + k);
-      hn::StoreMaskBits(d, hn::Eq(hn::Max(here, enough), here), mask);
+      auto apart = hn::LoadU(d, patches + 64 * word + k);
+      for (std::uint32_t n = 1; n < fewest; ++n) apart = hn::And(apart, hn::Sub(apart, one));  // without the lowest bit
+      hn::StoreMaskBits(d, hn::And(hn::Eq(hn::Max(here, enough), here), hn::Ne(apart, hn::Zero(d))), mask);
       all |= (std::uint64_t{mask[0]} | std::uint64_t{mask[1]} << 8) << k;
     }
     bits[word] = all;
@@ -176,8 +227,9 @@ namespace meniscus {
 HWY_EXPORT(FindPieceBoxes);
 HWY_EXPORT(FindDenseKeys);
 HWY_EXPORT(FindKeptKeys);
-HWY_EXPORT(FindCellCoordinates);
-HWY_EXPORT(FindAtLeast);
+HWY_EXPORT(FindDenseKeysAndPatches);
+HWY_EXPORT(FindQuarters);
+HWY_EXPORT(FindWellFilled);
 
 void find_piece_boxes(const float* x, const float* y, const float* z, std::size_t count, Bounds* boxes) {
   HWY_DYNAMIC_DISPATCH(FindPieceBoxes)(x, y, z, count, boxes);
@@ -188,17 +240,23 @@ void find_dense_keys(const BandCells& cells, const float* x, const float* y, con
   HWY_DYNAMIC_DISPATCH(FindDenseKeys)(cells, x, y, z, count, keys);
 }
 
+void find_dense_keys(const BandCells& cells, const float* x, const float* y, const float* z, std::size_t count,
+                     std::uint32_t* keys, std::uint32_t* patches) {
+  HWY_DYNAMIC_DISPATCH(FindDenseKeysAndPatches)(cells, x, y, z, count, keys, patches);
+}
+
 std::size_t find_kept_keys(const BandCells& cells, const float* x, const float* y, const float* z, std::size_t count,
                            const std::uint32_t* left_out, std::uint32_t* keys, std::uint32_t* places) {
   return HWY_DYNAMIC_DISPATCH(FindKeptKeys)(cells, x, y, z, count, left_out, keys, places);
 }
 
-void find_at_least(const std::uint32_t* counts, std::uint32_t least, std::uint64_t* bits) {
-  HWY_DYNAMIC_DISPATCH(FindAtLeast)(counts, least, bits);
+void find_well_filled(const std::uint32_t* counts, std::uint32_t least, const std::uint32_t* patches,
+                      std::uint32_t fewest, std::uint64_t* bits) {
+  HWY_DYNAMIC_DISPATCH(FindWellFilled)(counts, least, patches, fewest, bits);
 }
 
-void find_cell_coordinates(float low, float per_cell, const float* values, std::size_t count, std::int32_t* cells) {
-  HWY_DYNAMIC_DISPATCH(FindCellCoordinates)(low, per_cell, values, count, cells);
+void find_quarters(float low, float per_cell, const float* values, std::size_t count, std::int32_t* quarters) {
+  HWY_DYNAMIC_DISPATCH(FindQuarters)(low, per_cell, values, count, quarters);
 }
 
 }  // namespace meniscus

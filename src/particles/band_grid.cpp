@@ -13,6 +13,7 @@ constexpr float kMostBlocksAlongAxis = 1 << 21;
 constexpr std::size_t kMostDenseBlocks = std::size_t{1} << 22;
 constexpr std::size_t kLeastPart = 1 << 16;  ///< particles
 constexpr std::size_t kBlocks = 64;          ///< in one piece of work
+constexpr std::uint32_t kFewestPatches = 3;  ///< of a cell, that the particles of a well filled one lie in
 
 Bounds bounds_of(const Particles& particles, std::vector<Bounds>& boxes) {
   constexpr std::size_t kPieces = 1024;
@@ -75,8 +76,10 @@ class BandGrid::Build {
 
   void count() {
     const std::size_t all = particles_.size();
-    const std::size_t parts = std::clamp<std::size_t>(
+    std::size_t parts = std::clamp<std::size_t>(
         std::min<std::size_t>(2 * static_cast<std::size_t>(thread_count()), all / kLeastPart), 1, 8);
+    // An even number where there have to be more, so that two threads have as much to do.
+    if (all / parts >= BandPart::kMost) parts = 2 * (all / (2 * BandPart::kMost) + 1);
     const std::size_t per_part = ((all + parts - 1) / parts + kBandPiece - 1) / kBandPiece * kBandPiece;
     const BandCells cells{grid_.bounds_.low, grid_.per_cell_, grid_.blocks_x_, grid_.blocks_y_};
     for (std::size_t from = 0; from < all; from += per_part)
@@ -126,7 +129,7 @@ class BandGrid::Build {
           std::uint32_t total = 0;
           for (BandPart& part : parts_)
             part.for_each(keys_[block], [&](std::size_t cell, std::uint32_t counter) {
-              total = std::min(total + counter, 2u);
+              total = std::min(total + (counter & kBandCount), 2u);
               if (counter > 0) lone[block] = static_cast<std::int32_t>(cell);
             });
           if (total > 1) lone[block] = -1;
@@ -152,12 +155,21 @@ class BandGrid::Build {
       g.page_[block] = page;
     }
     g.count_.resize(std::size_t{pages} * kCells);
+    if (options_.well_filled > 0) filled_.resize(pages);
     parallel_for(pages, kBlocks, [&](std::size_t begin, std::size_t end) {
+      std::uint32_t patches[kCells];
       for (std::size_t page = begin; page < end; ++page) {
         std::uint32_t* count = &g.count_[page * kCells];
         std::fill_n(count, kCells, 0u);
+        std::fill_n(patches, kCells, 0u);
         for (BandPart& part : parts_)
-          part.for_each(keys_[own_[page]], [&](std::size_t cell, std::uint32_t counter) { count[cell] += counter; });
+          part.for_each(keys_[own_[page]], [&](std::size_t cell, std::uint32_t counter) {
+            count[cell] += counter & kBandCount;
+            patches[cell] |= counter >> kBandCountBits;
+          });
+        if (options_.well_filled > 0)
+          find_well_filled(count, options_.well_filled, patches, std::min(options_.well_filled, kFewestPatches),
+                           filled_[page].data());
       }
     });
   }
@@ -174,7 +186,7 @@ class BandGrid::Build {
     std::vector<BandSides> sides(blocks);
     parallel_for(blocks, kBlocks, [&](std::size_t begin, std::size_t end) {
       for (std::size_t block = begin; block < end; ++block) {
-        find_at_least(g.counts(static_cast<int>(block)), options_.well_filled, hidden[block].data());
+        hidden[block] = filled_[g.page_[block]];
         const glm::ivec3 at = g.corner_[block] / kSide;
         sides[block] = {g.find(at.x - 1, at.y, at.z), g.find(at.x + 1, at.y, at.z), g.find(at.x, at.y - 1, at.z),
                         g.find(at.x, at.y + 1, at.z), g.find(at.x, at.y, at.z - 1), g.find(at.x, at.y, at.z + 1)};
@@ -274,7 +286,7 @@ class BandGrid::Build {
           next[cell] = is_deep(block, cell) ? kLeftOut : g.first_[block] + start[cell];
         for (BandPart& part : parts_)
           part.for_each(keys_[block], [&](std::size_t cell, std::uint32_t& counter) {
-            const std::uint32_t in_part = counter;
+            const std::uint32_t in_part = counter & kBandCount;
             counter = next[cell];
             if (next[cell] != kLeftOut) next[cell] += in_part;
           });
@@ -371,6 +383,7 @@ class BandGrid::Build {
   std::vector<BandPart> parts_;
   std::vector<std::uint64_t> keys_;  ///< of blocks, rising
   std::vector<std::uint32_t> own_;   ///< a block of each page
+  std::vector<BandBits> filled_;     ///< by page: well filled cells
   std::vector<BandBits> deep_;       ///< empty where no cell is
 };
 

@@ -5,19 +5,22 @@
 namespace meniscus {
 
 void BandPart::count(const Particles& particles) {
-  std::uint32_t keys[kBandPiece];
+  std::uint32_t keys[kBandPiece], patches[kBandPiece];
   for (std::size_t from = begin_; from < end_; from += kBandPiece) {
     const std::size_t to = std::min(from + kBandPiece, end_);
     if (!dense_) {
-      for_each_hashed(particles, from, to,
-                      [&](std::size_t, Entry& entry, std::uint32_t cell) { ++counter_of(entry, cell); });
+      for_each_hashed(particles, from, to, [&](std::size_t, Entry& entry, std::uint32_t cell, std::uint32_t patch) {
+        Counter& counter = counter_of(entry, cell);
+        counter = (counter + 1) | 1u << (kBandCountBits + patch);
+      });
       continue;
     }
-    find_dense_keys(cells_, &particles.x[from], &particles.y[from], &particles.z[from], to - from, keys);
+    find_dense_keys(cells_, &particles.x[from], &particles.y[from], &particles.z[from], to - from, keys, patches);
     for (std::size_t i = 0; i < to - from; ++i) {
       Counter*& page = table_[keys[i] >> 9];
       if (!page) page = new_page();
-      ++page[keys[i] & 511u];
+      Counter& counter = page[keys[i] & 511u];
+      counter = (counter + 1) | patches[i];
     }
   }
 }

@@ -13,11 +13,12 @@ namespace meniscus {
 /// comes: a page of 512, found by a dense table of blocks; or, where blocks are found by hashing, room for a few cells
 /// first, and a page when that is full, so that lone particles take little.
 ///
-/// The counters serve twice: when all have been counted, they are set to where the particles of this part go, which
-/// next() then gives out.
+/// The counters serve twice: for the numbers of particles and the patches that they lie in, and when all have been
+/// counted, for where the particles of this part go.
 class BandPart {
  public:
   using Counter = std::uint32_t;
+  static constexpr std::size_t kMost = kBandCount / kBandPiece * kBandPiece;  ///< particles that one may have
   static constexpr std::size_t kCells = 512;
 
   /// @param dense_blocks  places in the dense table; 0: by hashing
@@ -59,8 +60,9 @@ class BandPart {
       find_dense_keys(cells_, &particles.x[from], &particles.y[from], &particles.z[from], to - from, keys);
       for (std::size_t i = from; i < to; ++i) visit(i, table_[keys[i - from] >> 9][keys[i - from] & 511u]);
     } else {
-      for_each_hashed(particles, from, to,
-                      [&](std::size_t i, Entry& entry, std::uint32_t cell) { visit(i, counter_of(entry, cell)); });
+      for_each_hashed(particles, from, to, [&](std::size_t i, Entry& entry, std::uint32_t cell, std::uint32_t) {
+        visit(i, counter_of(entry, cell));
+      });
     }
   }
 
@@ -108,21 +110,21 @@ class BandPart {
   Counter& counter_of(Entry& entry, std::uint32_t cell);
   template <class Visit>
   void for_each_hashed(const Particles& particles, std::size_t from, std::size_t to, Visit visit) {
-    std::int32_t cx[kBandPiece], cy[kBandPiece], cz[kBandPiece];
-    find_cell_coordinates(cells_.low.x, cells_.per_cell, &particles.x[from], to - from, cx);
-    find_cell_coordinates(cells_.low.y, cells_.per_cell, &particles.y[from], to - from, cy);
-    find_cell_coordinates(cells_.low.z, cells_.per_cell, &particles.z[from], to - from, cz);
+    std::int32_t qx[kBandPiece], qy[kBandPiece], qz[kBandPiece];
+    find_quarters(cells_.low.x, cells_.per_cell, &particles.x[from], to - from, qx);
+    find_quarters(cells_.low.y, cells_.per_cell, &particles.y[from], to - from, qy);
+    find_quarters(cells_.low.z, cells_.per_cell, &particles.z[from], to - from, qz);
     std::uint64_t last_key = ~std::uint64_t{0};
     std::size_t last = 0;
     for (std::size_t i = from; i < to; ++i) {
-      const auto x = static_cast<std::uint32_t>(cx[i - from]), y = static_cast<std::uint32_t>(cy[i - from]),
-                 z = static_cast<std::uint32_t>(cz[i - from]);
-      const std::uint64_t key = key_of(x >> 3, y >> 3, z >> 3);
+      const auto x = static_cast<std::uint32_t>(qx[i - from]), y = static_cast<std::uint32_t>(qy[i - from]),
+                 z = static_cast<std::uint32_t>(qz[i - from]);
+      const std::uint64_t key = key_of(x >> 5, y >> 5, z >> 5);
       if (key != last_key) {
         last = static_cast<std::size_t>(find_or_add(key));
         last_key = key;
       }
-      visit(i, entries_[last], (z & 7) << 6 | (y & 7) << 3 | (x & 7));
+      visit(i, entries_[last], (z >> 2 & 7) << 6 | (y >> 2 & 7) << 3 | (x >> 2 & 7), band_patch(x, y, z));
     }
   }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "particles/clouds.h"
 
@@ -17,8 +18,11 @@ class Oracle {
  public:
   Oracle(const Particles& particles, const BandGrid::Options& options) : options_(options) {
     low_ = particles.bounds().low;
-    for (std::size_t i = 0; i < particles.size(); ++i)
-      cells_[cell_of(particles.position(i))].push_back(static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      const vec3 p = particles.position(i);
+      cells_[cell_of(p)].push_back(static_cast<std::uint32_t>(i));
+      patches_[cell_of(p)].insert(patch_of(p));
+    }
   }
   using Cell = std::array<int, 3>;
   Cell cell_of(vec3 p) const {
@@ -32,6 +36,7 @@ class Oracle {
         for (int x = -reach; x <= reach; ++x) {
           const auto found = cells_.find({c[0] + x, c[1] + y, c[2] + z});
           if (found == cells_.end() || found->second.size() < options_.well_filled) return false;
+          if (patches_.at(found->first).size() < std::min(options_.well_filled, 3u)) return false;
         }
     return true;
   }
@@ -47,8 +52,15 @@ class Oracle {
   const std::map<Cell, std::vector<std::uint32_t>>& cells() const { return cells_; }
 
  private:
+  int patch_of(vec3 p) const {
+    const vec3 at = (p - low_) * (1.0f / options_.cell_size);
+    const glm::ivec3 sub = glm::floor(4.0f * (at - glm::floor(at)));
+    return (sub.x + 2 * sub.y + 3 * sub.z) % 8;
+  }
+
   BandGrid::Options options_;
   vec3 low_;
+  std::map<Cell, std::set<int>> patches_;
   std::map<Cell, std::vector<std::uint32_t>> cells_;
   std::map<Cell, bool> deep_;
 };
@@ -130,6 +142,44 @@ TEST(BandGrid, FindsKindsAcrossBlocksOfTroubledWater) {
   EXPECT_GT(expect_as_defined(advected(20, 0.5), {2.0f, 2, 1}).hidden, 0u);
   expect_as_defined(splash(), {2.0f, 3, 2});
   EXPECT_GT(expect_as_defined(cubic(36, 36, 36), {1.5f, 1, 9}).deep, 0u);  // layers beyond a block
+}
+
+/// Cells of two with three particles each, in so many points.
+Particles in_clumps(int cells, int points) {
+  Particles particles;
+  add(particles, {0, 0, 0});
+  for (int z = 0; z < cells; ++z)
+    for (int y = 0; y < cells; ++y)
+      for (int x = 0; x < cells; ++x)
+        for (int i = 0; i < 3; ++i)
+          add(particles, 2.0 * glm::dvec3(x, y, z) + glm::dvec3(0.3 + 0.5 * std::min(i, points - 1), 0.3, 0.3));
+  return particles;
+}
+
+TEST(BandGrid, TakesClumpsForNoWaterHoweverManyParticlesTheyHold) {
+  const BandGrid::Options wanted{2.0f, 3, 1};
+  for (const Particles& cloud : {in_clumps(9, 1), joined(in_clumps(9, 1), in_clumps(9, 1)), in_clumps(9, 2)}) {
+    EXPECT_FALSE(BandGrid(cloud, wanted).has_hidden());
+    expect_as_defined(cloud, wanted);
+  }
+  EXPECT_GT(expect_as_defined(in_clumps(9, 3), wanted).deep, 0u);
+  EXPECT_GT(expect_as_defined(in_clumps(9, 1), {2.0f, 1, 1}).deep, 0u);  // one particle is enough
+}
+
+TEST(BandGrid, TakesALatticeForWaterWhereverItsPlanesAreRoundedTo) {
+  // Planes half a cell apart stand between sub-cubes but for rounding errors, to either side.
+  for (const double shift : {0.0, 0.25, 0.5, 0.75, 0.1})
+    for (int sides = 0; sides < 64; ++sides) {
+      const auto rounded = [&](int plane, int axis) {
+        return plane + 1 + shift + ((sides >> (2 * axis + plane % 2) & 1) != 0 ? 1e-5 : -1e-5);
+      };
+      Particles lattice;
+      add(lattice, {0, 0, 0});
+      for (int z = 0; z < 12; ++z)
+        for (int y = 0; y < 12; ++y)
+          for (int x = 0; x < 12; ++x) add(lattice, {rounded(x, 0), rounded(y, 1), rounded(z, 2)});
+      EXPECT_TRUE(BandGrid(lattice, {2.0f, 3, 0}).has_deep()) << shift << " " << sides;
+    }
 }
 
 TEST(BandGrid, KeepsAllWhereNoCellIsWellFilled) {
