@@ -226,7 +226,7 @@ class BeamMarch {
   /// Narrows the brackets of `count` of some rays and takes their depths.
   HWY_INLINE void refine(const int* rays, const int* crossed, int count, Bracket* brackets) {
     const RaycastOptions& options = field_.options;
-    if (!kSizes && options.refinement == Refinement::secant && options.refinement_steps >= 2 && !near_full_ &&
+    if (!kSizes && options.refinement == Refinement::secant && options.refinement_steps == 2 && !near_full_ &&
         samples_ > 1) {
       for (int c = 0; c < count; ++c)
         beam_.depth[rays[crossed[c]]] = steep_root(lists_.ray[crossed[c]], rays[crossed[c]], brackets[crossed[c]]);
