@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "surface/sphere_chord-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
@@ -344,22 +346,8 @@ class SpheresInTile {
       const int at = block + part;
       const Vec u = hn::Add(hn::Load(d, tile_.lane_u + part), hn::Set(d, block_u)),
                 v = hn::Add(hn::Load(d, tile_.lane_v + part), hn::Set(d, block_v));
-      Vec middle, off_axis2;
-      if (camera_.perspective) {
-        // The part of the centre across the ray is subtracted before it is squared: far away, the difference of two
-        // large squares would have no digits left.
-        const Vec dz = hn::Load(d, tile_.inverse_length + at);
-        const Vec dx = hn::Mul(u, dz), dy = hn::Mul(v, dz);
-        middle = hn::MulAdd(cx, dx, hn::MulAdd(cy, dy, hn::Mul(cz, dz)));
-        const Vec ox = hn::NegMulAdd(middle, dx, cx), oy = hn::NegMulAdd(middle, dy, cy),
-                  oz = hn::NegMulAdd(middle, dz, cz);
-        off_axis2 = hn::MulAdd(ox, ox, hn::MulAdd(oy, oy, hn::Mul(oz, oz)));
-      } else {
-        const Vec ox = hn::Sub(cx, u), oy = hn::Sub(cy, v);
-        middle = cz;
-        off_axis2 = hn::MulAdd(ox, ox, hn::Mul(oy, oy));
-      }
-      const Vec half2 = hn::MulSub(radius, radius, off_axis2);
+      const Vec inverse_length = camera_.perspective ? hn::Load(d, tile_.inverse_length + at) : zero;
+      const auto [middle, half2] = sphere_chord(camera_.perspective, u, v, inverse_length, cx, cy, cz, radius);
       const Vec half = hn::Sqrt(hn::Max(half2, zero)), far_end = hn::Add(middle, half);
       const Mask hits = hn::And(hn::Gt(half2, zero), hn::Gt(far_end, zero));
       const Vec near_end = hn::Max(hn::Sub(middle, half), zero);

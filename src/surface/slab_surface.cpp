@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "surface/normal_filter.h"
-#include "surface/particle_thickness.h"
+#include "surface/raycast_field.h"
+#include "surface/thickness.h"
+#include "surface/thickness_water.h"
 
 namespace meniscus {
 namespace {
@@ -92,10 +94,27 @@ class SlabSurface final : public Surface {
     return fine;
   }
 
-  /// Of all particles one by one, as no slab tells which of them lie amidst others.
+  /// The sum of what the slabs hold: cells are those of the whole, and cuts lie between them, so that the sums differ
+  /// from the whole's only where cells beside a cut are told by their neighbours.
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     const StageTimer timer(times, "thickness");
-    return particle_thickness(particles_, options_.spacing, view, points);
+    return thickness_by_sums({bounds_, particles_.size(), options_.spacing}, view, points,
+                             [&](const SplatCamera& camera) {
+                               Image<float> sums(camera.width, camera.height, 0.0f);
+                               const std::vector<Slab> slabs = slabs_for(view);
+                               const float cell = smoothing_length_of(options_);
+                               const auto cell_at = [&](const Slab& slab, float border) {
+                                 return static_cast<int>(std::lround((border - bounds_.low[slab.axis]) / cell));
+                               };
+                               for (std::size_t k = 0; k < slabs.size(); ++k) {
+                                 const Slab& slab = slabs[k];
+                                 WaterShare share{particles_.size(), slab.axis};
+                                 if (k > 0) share.first = cell_at(slab, slab.low);
+                                 if (k + 1 < slabs.size()) share.end = cell_at(slab, slab.high);
+                                 if (share.first < share.end) add_water(share, camera, sums);
+                               }
+                               return sums;
+                             });
   }
 
   float spacing() const override { return options_.spacing; }
@@ -143,22 +162,55 @@ class SlabSurface final : public Surface {
     return slabs;
   }
 
-  /// The surface of the particles of a slab and of those up to `margin` m beside it.
-  std::unique_ptr<Surface> part_of(const Slab& slab, float margin, StageTimes* times) const {
+  /// Adds the water of some cells of the whole's grid.
+  void add_water(const WaterShare& share, const SplatCamera& camera, Image<float>& sums) const {
+    // Which cells lie amidst water is told by those around them.
+    const float cell = smoothing_length_of(options_), margin = margin_of(options_) + cell;
+    const float origin = bounds_.low[share.axis];
+    const float begin = origin + cell * static_cast<float>(share.first),
+                end = origin + cell * static_cast<float>(share.end);
+    const bool first = share.first <= 0, last = end >= bounds_.high[share.axis] - 0.01f * cell;
+    const Slab slab{share.axis, first ? -kInfinity : begin, last ? kInfinity : end};
+    Particles part = particles_in(slab, margin, nullptr);
+    // Two more in cells that do not count hold the bounds: one at each end, or both where the other end is the slab's.
+    vec3 low = bounds_.low, high = bounds_.high;
+    if (first) low[share.axis] = bounds_.high[share.axis];
+    if (last) high[share.axis] = bounds_.low[share.axis];
+    if (!first || !last) {
+      for (const vec3& at : {low, high}) {
+        part.x.push_back(at.x);
+        part.y.push_back(at.y);
+        part.z.push_back(at.z);
+      }
+    }
+    const RaycastField field = make_field(part, options_, {}, Keep::band);
+    const Image<float> more = summed_water(field.grid, options_.spacing, camera, share);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += more[i];
+  }
+
+  /// The particles of a slab and those up to `margin` m beside it.
+  /// @param colours  becomes theirs; may be null
+  Particles particles_in(const Slab& slab, float margin, std::vector<vec3>* colours) const {
     const std::vector<float>& values = values_of(particles_, slab.axis);
     const auto is_in = [&](float value) { return value >= slab.low - margin && value < slab.high + margin; };
     const auto count = static_cast<std::size_t>(std::count_if(values.begin(), values.end(), is_in));
     Particles part;
-    std::vector<vec3> colours;
-    for (std::vector<float>* list : {&part.x, &part.y, &part.z}) list->reserve(count);
-    if (!colours_.empty()) colours.reserve(count);
+    for (std::vector<float>* list : {&part.x, &part.y, &part.z}) list->reserve(count + 2);
+    if (colours != nullptr) colours->reserve(count);
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!is_in(values[i])) continue;
       part.x.push_back(particles_.x[i]);
       part.y.push_back(particles_.y[i]);
       part.z.push_back(particles_.z[i]);
-      if (!colours_.empty()) colours.push_back(colours_[i]);
+      if (colours != nullptr) colours->push_back(colours_[i]);
     }
+    return part;
+  }
+
+  /// The surface of the particles of a slab and of those up to `margin` m beside it.
+  std::unique_ptr<Surface> part_of(const Slab& slab, float margin, StageTimes* times) const {
+    std::vector<vec3> colours;
+    const Particles part = particles_in(slab, margin, colours_.empty() ? nullptr : &colours);
     RaycastOptions options = options_;
     options.filter_radius = 0;  // the filter reaches over borders
     options.want_thickness = false;

@@ -6,6 +6,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "surface/sphere_chord-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
@@ -22,29 +24,15 @@ HWY_INLINE void for_each_chord(const TileRays& rays, const TileSphere& sphere, V
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const Vec cx = hn::Set(d, sphere.x), cy = hn::Set(d, sphere.y), cz = hn::Set(d, sphere.z);
-  const Vec radius2 = hn::Set(d, sphere.radius * sphere.radius);
+  const Vec radius = hn::Set(d, sphere.radius);
   const Vec zero = hn::Zero(d);
   for (int y = sphere.y0; y <= sphere.y1; ++y) {
     const Vec v = hn::Set(d, rays.v0 + static_cast<float>(y) * rays.dv);
     for (int x = sphere.x0 - sphere.x0 % lanes; x <= sphere.x1; x += lanes) {
       const int offset = y * kTileWidth + x;
       const Vec u = hn::MulAdd(hn::Iota(d, static_cast<float>(x)), hn::Set(d, rays.du), hn::Set(d, rays.u0));
-      Vec middle, off_axis2;
-      if (rays.perspective) {
-        // The part of the centre across the ray is subtracted before it is squared: far away, the difference
-        // of two large squares would have no digits left.
-        const Vec dz = hn::Load(d, rays.inverse_length + offset);
-        const Vec dx = hn::Mul(u, dz), dy = hn::Mul(v, dz);
-        middle = hn::MulAdd(cx, dx, hn::MulAdd(cy, dy, hn::Mul(cz, dz)));
-        const Vec ox = hn::NegMulAdd(middle, dx, cx), oy = hn::NegMulAdd(middle, dy, cy),
-                  oz = hn::NegMulAdd(middle, dz, cz);
-        off_axis2 = hn::MulAdd(ox, ox, hn::MulAdd(oy, oy, hn::Mul(oz, oz)));
-      } else {
-        const Vec ox = hn::Sub(cx, u), oy = hn::Sub(cy, v);
-        middle = cz;
-        off_axis2 = hn::MulAdd(ox, ox, hn::Mul(oy, oy));
-      }
-      const Vec half2 = hn::Sub(radius2, off_axis2);
+      const Vec inverse_length = rays.perspective ? hn::Load(d, rays.inverse_length + offset) : zero;
+      const auto [middle, half2] = sphere_chord(rays.perspective, u, v, inverse_length, cx, cy, cz, radius);
       const auto hits = hn::Gt(half2, zero);
       if (hn::AllFalse(d, hits)) continue;
       visit(d, offset, middle, hn::Sqrt(hn::Max(half2, zero)), hits);

@@ -55,16 +55,24 @@ Image<float> enlarged(const Image<float>& coarse, int stride, int width, int hei
 }  // namespace
 
 Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view, std::span<const vec2> points) {
+  return thickness_by_sums({grid.bounds(), grid.counted(), spacing}, view, points, [&](const SplatCamera& camera) {
+    return summed_water(grid, spacing, camera, {grid.counted()});
+  });
+}
+
+Image<float> thickness_by_sums(const WaterBody& water, const View& view, std::span<const vec2> points,
+                               const std::function<Image<float>(const SplatCamera&)>& sum) {
   // Three samples in two spacings in the middle of the water.
-  const float middle = std::max(glm::dot(grid.bounds().centre() - view.eye, view.forward), spacing);
+  const float spacing = water.spacing;
+  const float middle = std::max(glm::dot(water.bounds.centre() - view.eye, view.forward), spacing);
   const float spacing_px = spacing / view.pixel_size(middle);
-  const int stride = grid.blocks() == 0 ? 1 : std::clamp(static_cast<int>(spacing_px / 1.3f + 0.5f), 1, 8);
+  const int stride = water.count == 0 ? 1 : std::clamp(static_cast<int>(spacing_px / 1.3f + 0.5f), 1, 8);
   const float spacing_samples = spacing_px / static_cast<float>(stride);
-  const Image<float> sums = summed_water(grid, spacing, SplatCamera(view, stride));
+  const Image<float> sums = sum(SplatCamera(view, stride));
   // Variance along an axis: that of a sphere's water (radius^2 / 5) less that of the spreading over four samples.
   const float radius = kThicknessRadius * spacing_samples;
   const float spread =
-      grid.size() <= kAllSpheres ? 0.0f : std::sqrt(std::max(radius * radius / 5.0f - 1.0f / 6.0f, 0.0f));
+      water.count <= kAllSpheres ? 0.0f : std::sqrt(std::max(radius * radius / 5.0f - 1.0f / 6.0f, 0.0f));
   const Image<float> smooth =
       smoothed_thickness(blurred(sums, std::min(spread, 1.0f)), std::min(spacing_samples, 4.0f), spacing);
   if (!points.empty()) {

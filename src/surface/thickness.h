@@ -1,7 +1,10 @@
 /// Thickness of the water: how much of it each ray runs through.
 #pragma once
 
+#include <functional>
+
 #include "particles/band_grid.h"
+#include "surface/splat_camera.h"
 
 namespace meniscus {
 
@@ -14,6 +17,18 @@ namespace meniscus {
 /// all particles before the eye is kept.
 /// @param spacing  m
 Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view, std::span<const vec2> points);
+
+/// Water whose thickness is summed.
+struct WaterBody {
+  Bounds bounds;      ///< of its particles
+  std::size_t count;  ///< of them
+  float spacing;      ///< m
+};
+
+/// splatted_thickness() of water whose sums are made elsewhere.
+/// @param sum  gives summed_water() of all of it through a camera
+Image<float> thickness_by_sums(const WaterBody& water, const View& view, std::span<const vec2> points,
+                               const std::function<Image<float>(const SplatCamera&)>& sum);
 
 /// A picture between the centres of its pixels, at `points`.
 Image<float> sampled_picture(const Image<float>& picture, std::span<const vec2> points);

@@ -6,6 +6,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "surface/sphere_chord-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace meniscus {
 namespace HWY_NAMESPACE {
@@ -15,8 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = HWY_CAPPED(float, 16);
 using Vec = hn::Vec<Tag>;
 
-void points(const SplatCamera& camera, const float* x, const float* y, const float* z, float volume, std::size_t count,
-            ThicknessCanvas& canvas) {
+void points(const SplatCamera& camera, const float* x, const float* y, const float* z, const float* shares,
+            float volume, std::size_t count, ThicknessCanvas& canvas) {
   const Tag d;
   const hn::RebindToSigned<Tag> di;
   const std::size_t lanes = hn::Lanes(d);
@@ -44,6 +46,7 @@ void points(const SplatCamera& camera, const float* x, const float* y, const flo
     };
     Vec u = along(camera.right), v = along(camera.up);
     Vec water = hn::Mul(hn::Set(d, volume), per_area);
+    if (shares != nullptr) water = hn::Mul(water, load(shares));
     const Vec depth = along(camera.forward);
     if (camera.perspective) {
       // A sample's beam has the area du^2 z^2 / |(u, v, 1)| across the ray.
@@ -110,19 +113,9 @@ void sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, 
   if (rect.empty()) return;
   const Vec cx = hn::Set(d, c.x), cy = hn::Set(d, c.y), cz = hn::Set(d, c.z), zero = hn::Zero(d);
   for_each_vector(camera, rect, canvas, [&](float* values, Vec u, Vec v, auto valid) {
-    Vec middle = cz, off_axis2;
-    if (camera.perspective) {
-      const Vec one = hn::Set(d, 1.0f), dz = hn::Div(one, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
-      const Vec dx = hn::Mul(u, dz), dy = hn::Mul(v, dz);
-      middle = hn::MulAdd(cx, dx, hn::MulAdd(cy, dy, hn::Mul(cz, dz)));
-      const Vec ox = hn::NegMulAdd(middle, dx, cx), oy = hn::NegMulAdd(middle, dy, cy),
-                oz = hn::NegMulAdd(middle, dz, cz);
-      off_axis2 = hn::MulAdd(ox, ox, hn::MulAdd(oy, oy, hn::Mul(oz, oz)));
-    } else {
-      const Vec ox = hn::Sub(cx, u), oy = hn::Sub(cy, v);
-      off_axis2 = hn::MulAdd(ox, ox, hn::Mul(oy, oy));
-    }
-    const Vec half = hn::Sqrt(hn::Max(hn::Sub(hn::Set(d, radius * radius), off_axis2), zero));
+    const Vec one = hn::Set(d, 1.0f), inverse_length = hn::Div(one, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
+    const auto [middle, half2] = sphere_chord(camera.perspective, u, v, inverse_length, cx, cy, cz, hn::Set(d, radius));
+    const Vec half = hn::Sqrt(hn::Max(half2, zero));
     const Vec chord = hn::Sub(hn::Max(hn::Add(middle, half), zero), hn::Max(hn::Sub(middle, half), zero));
     add_to(values, hn::Mul(chord, hn::Set(d, weight)), valid);
   });
@@ -178,9 +171,9 @@ void box(const SplatCamera& camera, const SplatBox& box, float weight, bool stee
 
 }  // namespace
 
-void AddPoints(const SplatCamera& camera, const float* x, const float* y, const float* z, float volume,
-               std::size_t count, ThicknessCanvas& canvas) {
-  points(camera, x, y, z, volume, count, canvas);
+void AddPoints(const SplatCamera& camera, const float* x, const float* y, const float* z, const float* shares,
+               float volume, std::size_t count, ThicknessCanvas& canvas) {
+  points(camera, x, y, z, shares, volume, count, canvas);
 }
 void AddSphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
   sphere(camera, centre, radius, weight, canvas);
@@ -207,9 +200,9 @@ void ThicknessCanvas::start(const SampleRect& samples) {
   values.assign(static_cast<std::size_t>(pitch) * static_cast<std::size_t>(height() + 2) + 16, 0.0f);
 }
 
-void add_points(const SplatCamera& camera, const float* x, const float* y, const float* z, std::size_t count,
-                float volume, ThicknessCanvas& canvas) {
-  HWY_DYNAMIC_DISPATCH(AddPoints)(camera, x, y, z, volume, count, canvas);
+void add_points(const SplatCamera& camera, const float* x, const float* y, const float* z, const float* shares,
+                std::size_t count, float volume, ThicknessCanvas& canvas) {
+  HWY_DYNAMIC_DISPATCH(AddPoints)(camera, x, y, z, shares, volume, count, canvas);
 }
 void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
   HWY_DYNAMIC_DISPATCH(AddSphere)(camera, centre, radius, weight, canvas);

@@ -22,9 +22,10 @@ struct ThicknessCanvas {
 };
 
 /// Adds `volume` m^3 of water at each of the points, spread over the four samples around it.
-/// @param x, y, z  `count` values, world space, m; none is behind the eye
-void add_points(const SplatCamera& camera, const float* x, const float* y, const float* z, std::size_t count,
-                float volume, ThicknessCanvas& canvas);
+/// @param x, y, z  `count` values, world space, m, and readable memory for 16 more
+/// @param shares   of `volume` by point, the same; null: all of it
+void add_points(const SplatCamera& camera, const float* x, const float* y, const float* z, const float* shares,
+                std::size_t count, float volume, ThicknessCanvas& canvas);
 
 /// Adds `weight` times the part of each ray that lies inside the sphere and before the eye.
 void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas);

@@ -1,112 +1,29 @@
 #include "surface/thickness_water.h"
 
-#include <cstring>
 #include <glm/geometric.hpp>
-#include <numeric>
 
-#include "particles/band_kinds.h"
 #include "surface/thickness_canvas.h"
+#include "surface/thickness_cells.h"
 
 namespace meniscus {
 namespace {
 
 /// A particle or eighth of a cell that is at most so many samples wide is a point.
 constexpr float kWidestPoint = 3.0f;
-/// Of the particles that a cell inside the water holds, the share that counts as well filled.
-constexpr float kWellFilled = 0.4f;
-/// Up to so many kept particles all of them are looked at: only cells whose particles were left out are not.
-constexpr std::size_t kAllParticles = 1 << 20;
 constexpr std::size_t kMostPieces = 16;
 constexpr double kPieceCost = 20000, kBlockCost = 100;  ///< in particles
 
-/// The cells that are deep, or hidden or deep, from their kinds: those of a row
-/// of eight at once.
-BandBits bits_of_kinds(const BandGrid::Kind* kinds, bool deep_only) {
-  static_assert(BandGrid::hidden == 1 && BandGrid::deep == 2 && sizeof(BandGrid::Kind) == 1);
-  constexpr std::uint64_t kOnes = 0x0101010101010101u;
+/// Cells of a block that count.
+BandBits cells_of(const WaterShare& share, glm::ivec3 corner) {
   BandBits bits{};
-  for (std::size_t row = 0; row < 64; ++row) {
-    std::uint64_t eight;
-    std::memcpy(&eight, kinds + 8 * row, 8);
-    const std::uint64_t set = (deep_only ? eight >> 1 : eight >> 1 | eight) & kOnes;
-    // Byte i of zero or one goes to bit 56 + i.
-    bits[row / 8] |= set * 0x0102040810204080u >> 56 << 8 * (row % 8);
-  }
-  return bits;
-}
-
-/// By block, the cells amidst well filled ones: their particles need not be
-/// known one by one.
-std::vector<BandBits> amidst_water(const BandGrid& grid, float spacing) {
-  const auto blocks = static_cast<std::size_t>(grid.blocks());
-  std::vector<BandBits> bits(blocks, BandBits{});
-  const float cell = grid.cell_size() / spacing;
-  const auto well_filled = static_cast<std::uint32_t>(std::max(1.0f, kWellFilled * cell * cell * cell));
-  const bool known = grid.has_hidden(), few = grid.size() <= kAllParticles;
-  if (few && !grid.has_deep()) return bits;
-  std::vector<BandSides> sides(known ? 0 : blocks);
-  parallel_for(blocks, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const int block = static_cast<int>(b);
-      bits[b] = {};
-      if (known && grid.all_open(block)) continue;
-      const std::uint32_t* counts = grid.counts(block);
-      if (known)
-        bits[b] = bits_of_kinds(grid.kinds(block), few);
-      else
-        for (std::size_t c = 0; c < BandGrid::kCells; ++c)
-          bits[b][c / 64] |= static_cast<std::uint64_t>(counts[c] >= well_filled) << c % 64;
-      if (known) continue;
-      const glm::ivec3 at = grid.corner(block) / BandGrid::kSide;
-      sides[b] = {grid.find(at.x - 1, at.y, at.z), grid.find(at.x + 1, at.y, at.z), grid.find(at.x, at.y - 1, at.z),
-                  grid.find(at.x, at.y + 1, at.z), grid.find(at.x, at.y, at.z - 1), grid.find(at.x, at.y, at.z + 1)};
+  const int first = std::clamp(share.first - corner[share.axis], 0, BandGrid::kSide);
+  const int end = std::clamp(share.end - corner[share.axis], 0, BandGrid::kSide);
+  for (int slice = 0; slice < BandGrid::kSide; ++slice)
+    for (int cell = 0; cell < 64; ++cell) {
+      const int place = share.axis == 0 ? cell % 8 : share.axis == 1 ? cell / 8 : slice;
+      if (place >= first && place < end) bits[static_cast<std::size_t>(slice)] |= std::uint64_t{1} << cell;
     }
-  });
-  if (!known) erode(bits, sides, 1, false);
   return bits;
-}
-
-struct CellsAmidst {
-  double particles = 0;
-  double cells = 0;
-};
-
-/// Particles in a cell amidst water, by block: the mean over such cells of the block and those around it. The numbers
-/// of single cells would show: where rows of particles lie along the cells' sides, rounding puts two, four or six into
-/// one.
-std::vector<float> mean_counts(const BandGrid& grid, const std::vector<BandBits>& amidst) {
-  std::vector<CellsAmidst> own(amidst.size());
-  std::vector<float> means(amidst.size(), 0.0f);
-  parallel_for(own.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b)
-      for (std::size_t slice = 0; slice < amidst[b].size(); ++slice) {
-        const std::uint32_t* counts = grid.counts(static_cast<int>(b)) + slice * 64;
-        std::uint64_t sum = 0;
-        if (amidst[b][slice] == ~std::uint64_t{0})
-          sum = std::accumulate(counts, counts + 64, std::uint64_t{0});
-        else
-          for (std::uint64_t word = amidst[b][slice]; word != 0; word &= word - 1) sum += counts[__builtin_ctzll(word)];
-        own[b].particles += static_cast<double>(sum);
-        own[b].cells += __builtin_popcountll(amidst[b][slice]);
-      }
-  });
-  parallel_for(own.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      if (!(own[b].cells > 0.0)) continue;
-      const glm::ivec3 at = grid.corner(static_cast<int>(b)) / BandGrid::kSide;
-      CellsAmidst sum;
-      for (int z = -1; z <= 1; ++z)
-        for (int y = -1; y <= 1; ++y)
-          for (int x = -1; x <= 1; ++x) {
-            const int other = grid.find(at.x + x, at.y + y, at.z + z);
-            if (other < 0) continue;
-            sum.particles += own[static_cast<std::size_t>(other)].particles;
-            sum.cells += own[static_cast<std::size_t>(other)].cells;
-          }
-      means[b] = static_cast<float>(sum.particles / sum.cells);
-    }
-  });
-  return means;
 }
 
 /// Whether all rays through the box run nearly along an axis' plane: the sum of boxes then ends in steps that single
@@ -135,14 +52,14 @@ bool sees_sides(const Bounds& box, const SplatCamera& camera) {
 /// Blocks that are added to one canvas after another.
 class Water {
  public:
-  Water(const BandGrid& grid, float spacing, const SplatCamera& camera)
+  Water(const BandGrid& grid, float spacing, const SplatCamera& camera, const WaterShare& share)
       : grid_(grid),
         spacing_(spacing),
         camera_(camera),
         volume_(spacing * spacing * spacing),
+        share_(share),
         steep_(sees_sides(grid.bounds(), camera)),
-        amidst_(amidst_water(grid, spacing)),
-        mean_count_(mean_counts(grid, amidst_)) {}
+        counted_(grid, spacing, share.all) {}
 
   SplatBox box(int block) const {
     const float half = 0.5f * grid_.cell_size() * BandGrid::kSide;
@@ -173,28 +90,35 @@ class Water {
     const float spacing_samples = !(near > 0.0f)        ? 2.0f * kWidestPoint
                                   : camera_.perspective ? spacing_ / (near * camera_.du)
                                                         : spacing_ / camera_.du;
-    const bool all_spheres = grid_.size() <= kAllSpheres;
-    const BandBits& amidst = amidst_[static_cast<std::size_t>(block)];
+    const bool all_spheres = share_.all <= kAllSpheres;
+    const int place = grid_.corner(block)[share_.axis];
+    const bool is_cut = share_.first > place || share_.end < place + BandGrid::kSide;
+    BandBits cells = counted_.cells(block), skipped = cells;
     std::uint64_t all = ~std::uint64_t{0}, any = 0;
-    for (const std::uint64_t word : amidst) {
-      all &= word;
-      any |= word;
+    const BandBits own = is_cut ? cells_of(share_, grid_.corner(block)) : BandBits{};
+    for (std::size_t slice = 0; slice < cells.size(); ++slice) {
+      if (is_cut) {
+        cells[slice] &= own[slice];
+        skipped[slice] |= ~own[slice];
+      }
+      all &= cells[slice];
+      any |= cells[slice];
     }
     if (all == ~std::uint64_t{0}) {
-      add_box(camera_, whole, density(block), steep_, canvas);
+      add_cells_as_box(block, {0, 0, 0}, BandGrid::kSide, canvas);
       return;
     }
     if (any != 0)
-      add_cells(block, amidst, all_spheres || 0.5f * spacing_samples * grid_.cell_size() > kWidestPoint * spacing_,
+      add_cells(block, cells, all_spheres || 0.5f * spacing_samples * grid_.cell_size() > kWidestPoint * spacing_,
                 canvas);
-    add_particles(block, amidst, all_spheres || spacing_samples > kWidestPoint, canvas);
+    add_particles(block, skipped, all_spheres || spacing_samples > kWidestPoint, canvas);
   }
 
  private:
-  /// Of the water in cells amidst water, as a share of their volume.
-  float density(int block) const {
-    const float cell = grid_.cell_size();
-    return mean_count_[static_cast<std::size_t>(block)] * volume_ / (cell * cell * cell);
+  /// A cube of `side` counted cells.
+  void add_cells_as_box(int block, glm::ivec3 first, int side, ThicknessCanvas& canvas) const {
+    const vec3 low = counted_.corner(block, first), high = counted_.corner(block, first + side);
+    add_box(camera_, {0.5f * (low + high), 0.5f * (high - low)}, counted_.density(block), steep_, canvas);
   }
 
   /// The cells that are set: cubes of 4 and of 2 cells a side as boxes, the others one by one.
@@ -209,7 +133,6 @@ class Water {
 
   /// Cubes of `side` cells, at multiples of it, all of whose cells are set in `rest`; clears them there.
   void add_cubes(int block, int side, BandBits& rest, ThicknessCanvas& canvas) const {
-    const float half = 0.5f * static_cast<float>(side) * grid_.cell_size();
     for (int z = 0; z < BandGrid::kSide; z += side) {
       std::uint64_t full = ~std::uint64_t{0};
       for (int k = z; k < z + side; ++k) full &= rest[static_cast<std::size_t>(k)];
@@ -220,30 +143,29 @@ class Water {
           for (int j = y; j < y + side; ++j) cube |= ((std::uint64_t{1} << side) - 1) << (8 * j + x);
           if ((full & cube) != cube) continue;
           for (int k = z; k < z + side; ++k) rest[static_cast<std::size_t>(k)] &= ~cube;
-          const vec3 low = grid_.low(block) + grid_.cell_size() * vec3(x, y, z);
-          add_box(camera_, {low + half, vec3{half}}, density(block), steep_, canvas);
+          add_cells_as_box(block, {x, y, z}, side, canvas);
         }
     }
   }
 
   /// Eight points a cell: one would show the rows of cells in views along an axis.
   void add_cells_as_points(int block, const BandBits& cells, ThicknessCanvas& canvas) const {
-    const vec3 low = grid_.low(block);
-    const float size = grid_.cell_size();
     constexpr std::size_t kPoints = 8 * 64;
-    float x[kPoints], y[kPoints], z[kPoints];
+    float x[kPoints + 16], y[kPoints + 16], z[kPoints + 16], volumes[kPoints + 16];  // whole vectors are read
     for (int slice = 0; slice < BandGrid::kSide; ++slice) {
       std::size_t number = 0;
       for (std::uint64_t word = cells[static_cast<std::size_t>(slice)]; word != 0; word &= word - 1) {
         const int in_slice = __builtin_ctzll(word);
-        const vec3 first = low + size * (vec3(in_slice % 8, in_slice / 8, slice) + 0.25f);
+        const glm::ivec3 cell{in_slice % 8, in_slice / 8, slice};
+        const vec3 low = counted_.corner(block, cell), size = counted_.corner(block, cell + 1) - low;
         for (int k = 0; k < 8; ++k) {
-          x[number] = first.x + 0.5f * size * static_cast<float>(k & 1);
-          y[number] = first.y + 0.5f * size * static_cast<float>(k >> 1 & 1);
-          z[number++] = first.z + 0.5f * size * static_cast<float>(k >> 2);
+          x[number] = low.x + size.x * ((k & 1) != 0 ? 0.75f : 0.25f);
+          y[number] = low.y + size.y * ((k & 2) != 0 ? 0.75f : 0.25f);
+          z[number] = low.z + size.z * ((k & 4) != 0 ? 0.75f : 0.25f);
+          volumes[number++] = size.x * size.y * size.z;
         }
       }
-      if (number > 0) add_points(camera_, x, y, z, number, density(block) * size * size * size / 8.0f, canvas);
+      if (number > 0) add_points(camera_, x, y, z, volumes, number, counted_.density(block) / 8.0f, canvas);
     }
   }
 
@@ -262,7 +184,7 @@ class Water {
         cell = last + 1;
         if (!as_spheres) {
           if (run.begin < run.end)
-            add_points(camera_, grid_.x() + run.begin, grid_.y() + run.begin, grid_.z() + run.begin,
+            add_points(camera_, grid_.x() + run.begin, grid_.y() + run.begin, grid_.z() + run.begin, nullptr,
                        run.end - run.begin, volume_, canvas);
           continue;
         }
@@ -278,9 +200,9 @@ class Water {
   float spacing_;
   const SplatCamera& camera_;
   float volume_;  ///< m^3, of a particle
-  bool steep_;    ///< whether boxes are seen along their sides
-  std::vector<BandBits> amidst_;
-  std::vector<float> mean_count_;
+  WaterShare share_;
+  bool steep_;  ///< whether boxes are seen along their sides
+  CountedCells counted_;
 };
 
 /// Ends of pieces of the blocks that cost about the same, whatever the number of threads.
@@ -299,10 +221,10 @@ std::vector<int> pieces_of(const BandGrid& grid) {
 
 }  // namespace
 
-Image<float> summed_water(const BandGrid& grid, float spacing, const SplatCamera& camera) {
+Image<float> summed_water(const BandGrid& grid, float spacing, const SplatCamera& camera, const WaterShare& share) {
   Image<float> sums(camera.width, camera.height, 0.0f);
   if (grid.blocks() == 0) return sums;
-  const Water water(grid, spacing, camera);
+  const Water water(grid, spacing, camera, share);
   const std::vector<int> ends = pieces_of(grid);
   std::vector<ThicknessCanvas> canvases(ends.size());
   parallel_for(ends.size(), 1, [&](std::size_t piece, std::size_t) {

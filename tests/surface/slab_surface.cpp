@@ -56,6 +56,26 @@ TEST(SlabSurface, ShowsWhatTheWholeShows) {
       }
 }
 
+TEST(SlabSurface, SumsTheThicknessOfTheWhole) {
+  // Deep water, whose inner cells are boxes: light that falls through it bends by the slopes of the thickness.
+  Particles particles = lattice_box(120, 32, 30, 0.25f);
+  add(particles, particles.bounds().low - kSpacing * vec3{0.7f, 2.4f, 1.2f});  // moves the cells
+  const auto whole = make_raycast_surface(particles, options());
+  for (const vec3 direction : {vec3{0.2f, 0.6f, 1}, vec3{0, 1, 0}, vec3{-1, 0.4f, 0.1f}})
+    for (const Projection projection : kProjections) {
+      const View view = looking_at(particles.bounds(), direction, projection, 150, 100);
+      const Image<float> expected = whole->thickness(view);
+      for (const int slabs : {1, 2, 5}) {
+        const Image<float> sums = make_slab_surface(particles, options(), {}, slabs)->thickness(view);
+        double squares = 0;
+        for (std::size_t i = 0; i < sums.size(); ++i) squares += std::pow(double{sums[i]} - double{expected[i]}, 2);
+        const double rms = std::sqrt(squares / static_cast<double>(sums.size()));
+        EXPECT_LT(rms, slabs == 1 ? 1e-6 : 4e-3 * sum_of(expected) / static_cast<double>(sums.size()))
+            << slabs << " slabs, x " << direction.x;
+      }
+    }
+}
+
 TEST(SlabSurface, SeesColoursAndPointsBetweenPixels) {
   const Particles particles = long_tank();
   std::vector<vec3> colours;
