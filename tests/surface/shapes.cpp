@@ -119,9 +119,10 @@ TEST(LoneParticle, IsARoundDropOfItsOwnVolume) {
         });
         EXPECT_LT(radius_mean, 0.004) << surface_tests::name_of(kernel) << " iso " << iso;
         EXPECT_LT(radius_most, 0.05) << surface_tests::name_of(kernel) << " iso " << iso;
-        // In pictures normals are interpolated where they turn by less than 6 degrees in two pixels.
-        EXPECT_LT(quantile(normals, 0.99), 0.5) << surface_tests::name_of(kernel) << " iso " << iso;
-        EXPECT_LT(quantile(normals, 1), 6) << surface_tests::name_of(kernel) << " iso " << iso;
+        // In pictures normals are interpolated where they turn by less than 6 degrees in two pixels, and not at the
+        // rim, where a ball turns much within a pixel.
+        EXPECT_LT(quantile(normals, 0.99), 0.3) << surface_tests::name_of(kernel) << " iso " << iso;
+        EXPECT_LT(quantile(normals, 1), 0.6) << surface_tests::name_of(kernel) << " iso " << iso;
         const SurfaceBuffers single = surface->see(view, points);
         double normal_most = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
