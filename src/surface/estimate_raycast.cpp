@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRoughness = 1.3;  ///< area of water with waves and splashes over that of a box
 // Bytes, as measured on tanks and crowns of 1 and 5 million particles: what is held lies within 0.7 and 1.2 of it.
-constexpr double kBytesKept = 24;       ///< a kept particle: position, index, mass, radius
+constexpr double kBytesKept = 20;       ///< a kept particle: position, mass, radius; its index and colour are not in it
 constexpr double kBytesBuilt = 30;      ///< while it is sorted
 constexpr double kBytesACell = 13;      ///< start, counts and kind
 constexpr double kBytesACellBuilt = 4;  ///< more, while particles are counted
