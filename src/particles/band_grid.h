@@ -16,9 +16,9 @@ namespace meniscus {
 /// thousand times as wide as the tank takes no more memory than its particles justify: they are found by a dense table
 /// while that is small, else by hashing, and blocks that hold a single particle share their tables of cells.
 ///
-/// A cell is well filled when it holds at least `well_filled` particles; hidden when it and the 26 around it are; deep
-/// when all cells within `kept_layers` + 1 of it are well filled. Particles of deep cells are counted and left out:
-/// nothing that is asked near a surface lies within reach of them.
+/// A cell is well filled when it holds at least `well_filled` particles, in three patches of it (band_cells.h) if that
+/// many; hidden when it and the 26 around it are; deep when all cells within `kept_layers` + 1 of it are. Particles of
+/// deep cells are counted and left out: nothing that is asked near a surface lies within reach of them.
 ///
 /// Sorted order: by block (z slowest, then y, then x), within a block by cell (the same), within a cell as given, so
 /// that cells adjacent in x within one block are one contiguous run. It does not depend on the number of threads.
