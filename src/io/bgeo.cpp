@@ -138,14 +138,20 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
       Attribute& attribute = particles.attributes.emplace_back();
       attribute.name = description.name;
       attribute.components = static_cast<int>(description.words);
-      attribute.values.resize(count * description.words);
-      parts.push_back({type, word * kWord, description.words, attribute.values.data()});
+      parts.push_back({type, word * kWord, description.words, nullptr});
     }
     if (is_index)
       particles.notes.push_back(
           fmt::format("attribute '{}' gives its texts as numbers: {}", description.name, description.texts));
     word += description.words;
   }
+  // New memory costs as much time as the conversion: on all threads, too.
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      particles.attributes[i].values.resize(count * parts[i].components);
+      parts[i].target = particles.attributes[i].values.data();
+    }
+  });
   read_rows(first, stride, std::endian::big, count, parts);
   if (header.primitives > 0) {
     particles.notes.push_back(fmt::format("{} primitives were left out: only the points are read", header.primitives));

@@ -186,17 +186,23 @@ Attribute attribute_of(const NumberArray& array) {
 void add_attributes(std::span<const NumberArray> arrays, const PositionArrays& found, Particles& particles) {
   std::string left_out;
   std::size_t more = 0;
+  std::vector<std::size_t> taken;
   for (std::size_t i = 0; i < arrays.size(); ++i) {
     if (std::find(found.places.begin(), found.places.end(), i) != found.places.end()) continue;
     const std::string why = why_no_attribute(arrays[i], found.count);
     if (why.empty()) {
-      particles.attributes.push_back(attribute_of(arrays[i]));
+      taken.push_back(i);
     } else if (left_out.size() > 200) {
       ++more;
     } else {
       left_out += fmt::format("{}'{}' {}", left_out.empty() ? "" : ", ", arrays[i].name.substr(0, 60), why);
     }
   }
+  const std::size_t before = particles.attributes.size();
+  particles.attributes.resize(before + taken.size());
+  parallel_for(taken.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) particles.attributes[before + i] = attribute_of(arrays[taken[i]]);
+  });
   if (left_out.empty()) return;
   particles.notes.push_back(
       fmt::format("left out arrays: {}{}", left_out, more > 0 ? fmt::format(" and {} more", more) : ""));
