@@ -8,6 +8,7 @@
 #include "io/gzip.h"
 #include "io/ply_header.h"
 #include "io/raw.h"
+#include "io/readable.h"
 #include "io/readers.h"
 #include "io/text.h"
 
@@ -83,7 +84,9 @@ std::uint64_t FrameHead::reading_bytes() const {
   return particle_bytes() + wide + (format == "hdf5" ? 0 : file_bytes) + (compressed ? plain_bytes : 0);
 }
 
-FrameHead look_at_frame(const std::string& path, const ReadOptions& options) {
+namespace {
+
+FrameHead look_at_any(const std::string& path, const ReadOptions& options) {
   FrameHead head;
   const Bytes start = read_file(path, kStart);
   head.file_bytes = head.plain_bytes = start.size();
@@ -110,6 +113,16 @@ FrameHead look_at_frame(const std::string& path, const ReadOptions& options) {
     look(source);
   }
   return head;
+}
+
+}  // namespace
+
+FrameHead look_at_frame(const std::string& path, const ReadOptions& options) {
+  try {
+    return look_at_any(path, options);
+  } catch (const Error& error) {
+    throw readable(error);
+  }
 }
 
 }  // namespace meniscus::io

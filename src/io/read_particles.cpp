@@ -4,6 +4,7 @@
 
 #include "io/formats.h"
 #include "io/raw.h"
+#include "io/readable.h"
 #include "io/readers.h"
 
 namespace meniscus {
@@ -57,10 +58,9 @@ Particles read_particles(const std::string& path, const ReadOptions& options) {
     finish(options, particles);
     return particles;
   } catch (const Error& error) {
-    if (!error.detail().path.empty()) throw;
-    ErrorDetail detail = error.detail();  // of an option that does not fit this file
-    detail.path = path;
-    throw Error(error.code(), detail);
+    ErrorDetail detail = readable(error).detail();
+    if (detail.path.empty()) detail.path = path;  // of an option that does not fit this file
+    throw Error(error.code(), std::move(detail));
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::limit_exceeded,
                 {"there is not enough memory for the frame", {}, {}, path, {}, {}, "use fewer particles a frame"});
