@@ -15,6 +15,7 @@ namespace {
 // point attributes, vertex attributes, primitive attributes, detail attributes.
 constexpr std::size_t kHeaderSize = 5 + 9 * 4;
 constexpr std::size_t kWord = 4;
+constexpr std::uint32_t kMostAttributes = 65536;
 constexpr std::uint32_t kShownTexts = 6;  ///< of an index, in a note
 
 enum class Kind : std::uint32_t { real = 0, integer = 1, text = 2, mixed = 3, index = 4, vector = 5 };
@@ -80,6 +81,10 @@ std::optional<Header> header_of(const Source& source) {
   cursor.skip(2 * kWord);  // numbers of groups
   const std::uint32_t attribute_count = cursor.number_32();
   cursor.skip(3 * kWord);  // numbers of other attributes
+
+  if (attribute_count > kMostAttributes)
+    source.malformed("has an impossible number of point attributes", 25, fmt::format("at most {}", kMostAttributes),
+                     fmt::format("{}", attribute_count));
 
   // Each description: name, number of values, type; then a default value each, or the table of strings.
   header.stride = 4 * kWord;
