@@ -12,6 +12,7 @@
 #include "bench_timing.h"
 #include "commands.h"
 #include "json.h"
+#include "meniscus/io.h"
 #include "meniscus/render.h"
 
 namespace meniscus::apps {
@@ -201,7 +202,7 @@ Json measure(const Table1Arguments& arguments) {
     try {
       const Particles crown = synthetic_crown(count);
       if (!arguments.frames.empty())
-        write_particles_ply(fmt::format("{}/crown_{}.ply", arguments.frames, count), crown);
+        write_particles(fmt::format("{}/crown_{}.ply", arguments.frames, count), crown);
       for (Json& row : rows_of(crown, sizes, repeats_of(count, arguments.repeat), arguments.frames))
         rows.push_back(std::move(row));
     } catch (const std::bad_alloc&) {

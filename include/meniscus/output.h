@@ -33,11 +33,6 @@ std::vector<std::pair<std::string, Image<float>>> read_exr(const std::string& pa
 void write_point_ply(const std::string& path, std::span<const vec3> positions, std::span<const vec3> normals,
                      std::span<const float> radii);
 
-/// A frame of particles as a binary little-endian PLY file that read_particles() reads back bit for bit: x, y, z and
-/// every attribute as 32-bit floats; time, spacing and up, where they are known, as lines `comment time 0.04`.
-/// @throws Error  invalid_argument: arrays of different lengths; io_failed naming the path
-void write_particles_ply(const std::string& path, const Particles& particles);
-
 struct VideoOptions {
   double frames_per_second = 25;
   int quality_crf = 18;  ///< constant quality, 0 best .. 51 worst

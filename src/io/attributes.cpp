@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <unordered_map>
+#include <utility>
 
 #include "io/text.h"
 
@@ -43,52 +46,55 @@ Attribute joined(std::string name, const Attribute& a, const Attribute& b, const
 
 using Places = std::array<std::size_t, 3>;
 
-/// Puts the joined attribute in the first one's place and takes the other two out.
-void join(std::vector<Attribute>& attributes, std::string name, const Places& at) {
-  attributes[at[0]] = joined(std::move(name), attributes[at[0]], attributes[at[1]], attributes[at[2]]);
-  const auto offset = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
-  attributes.erase(attributes.begin() + offset(std::max(at[1], at[2])));
-  attributes.erase(attributes.begin() + offset(std::min(at[1], at[2])));
-}
-
-/// The places of three attributes of one component that `component` maps to `base` and 0, 1, 2.
-template <class ComponentOf>
-std::optional<Places> places_of(const std::vector<Attribute>& attributes, const std::string& base,
-                                ComponentOf component) {
-  constexpr std::size_t kNone = ~std::size_t{0};
-  Places places{kNone, kNone, kNone};
-  for (std::size_t i = 0; i < attributes.size(); ++i) {
-    if (attributes[i].components != 1) continue;
-    const std::optional<Component> found = component(attributes[i].name);
-    if (!found || found->base != base) continue;
-    std::size_t& place = places[static_cast<std::size_t>(found->index)];
-    if (place == kNone) place = i;
-  }
-  if (std::find(places.begin(), places.end(), kNone) != places.end()) return std::nullopt;
-  return places;
-}
-
 std::optional<Component> uvw_of(std::string_view name) {
   if (name.size() == 1 && name[0] >= 'u' && name[0] <= 'w') return Component{"velocity", name[0] - 'u'};
   return std::nullopt;
 }
 
-void join_components(std::vector<Attribute>& attributes) {
+/// The places of attributes of one component that belong together: `component` maps their names to one base and 0, 1,
+/// 2. Of several of one name the first ones, then the second ones, and so on.
+template <class ComponentOf>
+std::vector<std::pair<std::string, Places>> triples_of(const std::vector<Attribute>& attributes,
+                                                       ComponentOf component) {
+  std::map<std::string, std::array<std::vector<std::size_t>, 3>> all;
   for (std::size_t i = 0; i < attributes.size(); ++i) {
-    const std::optional<Component> component =
-        attributes[i].components == 1 ? component_of(attributes[i].name) : std::nullopt;
-    if (!component || component->index != 0) continue;
-    if (const auto places = places_of(attributes, component->base, component_of)) {
-      // A second and third component that stand before the first move this one forward.
-      const auto before = static_cast<std::size_t>(
-          std::count_if(places->begin(), places->end(), [i](std::size_t place) { return place < i; }));
-      if ((*places)[0] == i) {
-        join(attributes, component->base, *places);
-        i -= before;
-      }
+    if (attributes[i].components != 1) continue;
+    if (const std::optional<Component> found = component(attributes[i].name))
+      all[found->base][static_cast<std::size_t>(found->index)].push_back(i);
+  }
+  std::vector<std::pair<std::string, Places>> triples;
+  for (const auto& [base, places] : all) {
+    const std::size_t count = std::min({places[0].size(), places[1].size(), places[2].size()});
+    for (std::size_t i = 0; i < count; ++i) triples.push_back({base, {places[0][i], places[1][i], places[2][i]}});
+  }
+  return triples;
+}
+
+/// Puts each joined attribute in the place of its first component and takes the other two out.
+void join(std::vector<Attribute>& attributes, const std::vector<std::pair<std::string, Places>>& triples) {
+  if (triples.empty()) return;
+  std::vector<bool> taken(attributes.size());
+  for (const auto& [base, at] : triples) {
+    attributes[at[0]] = joined(base, attributes[at[0]], attributes[at[1]], attributes[at[2]]);
+    for (const std::size_t place : {at[1], at[2]}) {
+      taken[place] = true;
+      attributes[place] = {};
     }
   }
-  if (const auto places = places_of(attributes, "velocity", uvw_of)) join(attributes, "velocity", *places);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < attributes.size(); ++i) {
+    if (taken[i]) continue;
+    if (kept != i) attributes[kept] = std::move(attributes[i]);
+    ++kept;
+  }
+  attributes.resize(kept);
+}
+
+void join_components(std::vector<Attribute>& attributes) {
+  join(attributes, triples_of(attributes, component_of));
+  std::vector<std::pair<std::string, Places>> velocities = triples_of(attributes, uvw_of);
+  if (velocities.size() > 1) velocities.resize(1);
+  join(attributes, velocities);
 }
 
 }  // namespace
@@ -127,11 +133,14 @@ std::string common_name(std::string_view name, int components) {
 
 void unify_names(std::vector<Attribute>& attributes) {
   join_components(attributes);
+  std::unordered_map<std::string, std::size_t> uses;  // of each name
+  for (const Attribute& attribute : attributes) ++uses[attribute.name];
   for (Attribute& attribute : attributes) {
     std::string name = common_name(attribute.name, attribute.components);
-    const bool taken = std::any_of(attributes.begin(), attributes.end(),
-                                   [&](const Attribute& other) { return &other != &attribute && other.name == name; });
-    if (!taken) attribute.name = std::move(name);
+    if (name == attribute.name || uses[name] > 0) continue;
+    --uses[attribute.name];
+    ++uses[name];
+    attribute.name = std::move(name);
   }
 }
 

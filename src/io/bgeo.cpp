@@ -15,6 +15,7 @@ namespace {
 // point attributes, vertex attributes, primitive attributes, detail attributes.
 constexpr std::size_t kHeaderSize = 5 + 9 * 4;
 constexpr std::size_t kWord = 4;
+constexpr std::uint32_t kMostAttributes = 65536;
 constexpr std::uint32_t kShownTexts = 6;  ///< of an index, in a note
 
 enum class Kind : std::uint32_t { real = 0, integer = 1, text = 2, mixed = 3, index = 4, vector = 5 };
@@ -81,6 +82,10 @@ std::optional<Header> header_of(const Source& source) {
   const std::uint32_t attribute_count = cursor.number_32();
   cursor.skip(3 * kWord);  // numbers of other attributes
 
+  if (attribute_count > kMostAttributes)
+    source.malformed("has an impossible number of point attributes", 25, fmt::format("at most {}", kMostAttributes),
+                     fmt::format("{}", attribute_count));
+
   // Each description: name, number of values, type; then a default value each, or the table of strings.
   header.stride = 4 * kWord;
   for (std::uint32_t i = 0; i < attribute_count; ++i) {
@@ -138,14 +143,20 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
       Attribute& attribute = particles.attributes.emplace_back();
       attribute.name = description.name;
       attribute.components = static_cast<int>(description.words);
-      attribute.values.resize(count * description.words);
-      parts.push_back({type, word * kWord, description.words, attribute.values.data()});
+      parts.push_back({type, word * kWord, description.words, nullptr});
     }
     if (is_index)
       particles.notes.push_back(
           fmt::format("attribute '{}' gives its texts as numbers: {}", description.name, description.texts));
     word += description.words;
   }
+  // New memory costs as much time as the conversion: on all threads, too.
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      particles.attributes[i].values.resize(count * parts[i].components);
+      parts[i].target = particles.attributes[i].values.data();
+    }
+  });
   read_rows(first, stride, std::endian::big, count, parts);
   if (header.primitives > 0) {
     particles.notes.push_back(fmt::format("{} primitives were left out: only the points are read", header.primitives));

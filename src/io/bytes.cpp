@@ -6,11 +6,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 
 namespace meniscus::io {
 namespace {
+
+constexpr std::size_t kPiece = std::size_t{1} << 22;  ///< bytes of a file that one thread reads at once
 
 [[noreturn]] void system_failure(const std::string& path, std::string problem) {
   const int number = errno;
@@ -65,17 +68,27 @@ Bytes read_file(const std::string& path, std::size_t most) {
         {"is not a regular file", {}, S_ISDIR(status.st_mode) ? "a directory" : "a device or pipe", path, {}, {}, {}});
   }
 
-  // A file may shrink while it is read; what has been read is what it is.
+  // A file may shrink while it is read: what could be read up to the first gap is what it is. (Were it mapped instead
+  // of read, the process would be killed.)
   Bytes bytes(std::min(most, static_cast<std::size_t>(status.st_size)));
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = ::read(file.value, bytes.data() + done, bytes.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) system_failure(path, "cannot read the file");
-    if (count == 0) break;
-    done += static_cast<std::size_t>(count);
+  std::atomic<std::size_t> whole{bytes.size()};
+  std::atomic<int> failure{0};
+  parallel_for(bytes.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+    while (begin < end) {
+      const ssize_t count = ::pread(file.value, bytes.data() + begin, end - begin, static_cast<off_t>(begin));
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) failure = errno;
+      if (count <= 0) break;
+      begin += static_cast<std::size_t>(count);
+    }
+    for (std::size_t least = whole; begin < end && begin < least && !whole.compare_exchange_weak(least, begin);) {
+    }
+  });
+  if (failure != 0) {
+    errno = failure;
+    system_failure(path, "cannot read the file");
   }
-  if (done < bytes.size()) bytes.resize(done);
+  if (whole < bytes.size()) bytes.resize(whole);
   return bytes;
 }
 

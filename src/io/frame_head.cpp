@@ -7,6 +7,8 @@
 #include "io/formats.h"
 #include "io/gzip.h"
 #include "io/ply_header.h"
+#include "io/raw.h"
+#include "io/readable.h"
 #include "io/readers.h"
 #include "io/text.h"
 
@@ -78,10 +80,13 @@ std::uint64_t FrameHead::particle_bytes() const {
 std::uint64_t FrameHead::reading_bytes() const {
   // The HDF5 library reads by itself, an array at a time; a stream that is decompressed grows by doubling.
   const bool compressed = plain_bytes > 0 && plain_bytes != file_bytes;
-  return particle_bytes() + (format == "hdf5" ? 0 : file_bytes) + (compressed ? plain_bytes : 0);
+  const std::uint64_t wide = text ? 3 * sizeof(double) * particles : 0;  // positions in text are read as doubles
+  return particle_bytes() + wide + (format == "hdf5" ? 0 : file_bytes) + (compressed ? plain_bytes : 0);
 }
 
-FrameHead look_at_frame(const std::string& path) {
+namespace {
+
+FrameHead look_at_any(const std::string& path, const ReadOptions& options) {
   FrameHead head;
   const Bytes start = read_file(path, kStart);
   head.file_bytes = head.plain_bytes = start.size();
@@ -89,6 +94,12 @@ FrameHead look_at_frame(const std::string& path) {
     head.file_bytes = head.plain_bytes = std::filesystem::file_size(path, error);
   const Source source{path, start.span()};
   const auto look = [&](const Source& plain) {
+    if (!options.raw.empty()) {
+      head.format = "raw";
+      head.particles = head.plain_bytes / parse_raw_form(options.raw).row_bytes();
+      head.counted = true;
+      return;
+    }
     const Format& format = format_of(plain);
     head.format = format.name;
     if (format.look) format.look(plain, head);
@@ -102,6 +113,16 @@ FrameHead look_at_frame(const std::string& path) {
     look(source);
   }
   return head;
+}
+
+}  // namespace
+
+FrameHead look_at_frame(const std::string& path, const ReadOptions& options) {
+  try {
+    return look_at_any(path, options);
+  } catch (const Error& error) {
+    throw readable(error);
+  }
 }
 
 }  // namespace meniscus::io

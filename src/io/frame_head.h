@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "io/bytes.h"
+#include "meniscus/io.h"
 
 namespace meniscus::io {
 
@@ -24,7 +25,7 @@ struct FrameHead {
 };
 
 /// @throws Error  as read_particles(), where the start of the file is enough to see it
-FrameHead look_at_frame(const std::string& path);
+FrameHead look_at_frame(const std::string& path, const ReadOptions& options = {});
 
 // One a format, from the first bytes; `file_bytes` are those of the whole file after decompression.
 void look_at_bgeo(const Source& start, FrameHead& head);

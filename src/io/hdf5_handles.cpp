@@ -48,6 +48,15 @@ std::optional<std::pair<Scalar, std::endian>> plain_type(hid_t type) {
   return std::nullopt;
 }
 
+/// How many values there are, or the largest number if they are more.
+std::uint64_t product_of(std::span<const std::uint64_t> lengths) {
+  constexpr std::uint64_t kMost = ~std::uint64_t{0};
+  std::uint64_t product = 1;
+  for (const std::uint64_t length : lengths)
+    product = length > 0 && product > kMost / length ? kMost : product * length;
+  return product;
+}
+
 std::optional<double> number_in(hid_t attribute) {
   if (attribute < 0) return std::nullopt;
   const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
@@ -129,13 +138,12 @@ std::optional<NumberArray> Hdf5Group::describe(const std::string& name) const {
 }
 
 /// An array may claim any length: it must be in the file, or, compressed in chunks, be worth what is in the file.
-void Hdf5Group::check_size(hid_t dataset, const std::string& name) const {
+void Hdf5Group::check_size(hid_t dataset, const NumberArray& array) const {
   constexpr std::uint64_t kMostDeflate = 1100;  // zlib packs at most 1032 to 1
   const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
-  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   const Hdf5Handle plan(H5Dget_create_plist(dataset), H5Pclose);
   const std::uint64_t item = H5Tget_size(type.get());
-  const auto count = static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space.get()));
+  const std::uint64_t count = product_of(array.shape);  // the library's own count may have wrapped around
   const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(dataset), file_size_);
   std::uint64_t most = stored;
   std::uint64_t chunk = 0;
@@ -143,14 +151,10 @@ void Hdf5Group::check_size(hid_t dataset, const std::string& name) const {
     most = std::min(kMostDeflate * stored, believable_size(file_size_));
     std::array<hsize_t, H5S_MAX_RANK> lengths{};
     const int rank = H5Pget_chunk(plan.get(), H5S_MAX_RANK, lengths.data());
-    chunk = 1;
-    for (int i = 0; i < rank; ++i) {
-      const hsize_t length = std::max<hsize_t>(lengths[static_cast<std::size_t>(i)], 1);
-      chunk = chunk > ~std::uint64_t{0} / length ? ~std::uint64_t{0} : chunk * length;
-    }
+    chunk = product_of(std::vector<std::uint64_t>(lengths.begin(), lengths.begin() + std::max(rank, 0)));
   }
   if (item > 0 && count <= most / item && (count == 0 || chunk <= std::max(most, file_size_) / item)) return;
-  throw Error(ErrorCode::malformed_file, {fmt::format("the array '{}' is longer than what is stored of it", name),
+  throw Error(ErrorCode::malformed_file, {fmt::format("the array '{}' is longer than what is stored of it", array.name),
                                           fmt::format("{} x {} bytes", count, item),
                                           fmt::format("{} bytes", stored),
                                           path_,
@@ -165,10 +169,9 @@ Bytes Hdf5Group::load(NumberArray& array) const {
   if (!dataset || !array.type)
     throw Error(ErrorCode::malformed_file,
                 {fmt::format("has no array '{}' of numbers", array.name), {}, {}, path_, {}, {}, {}});
-  check_size(dataset.get(), array.name);
+  check_size(dataset.get(), array);
   const Hdf5Handle stored(H5Dget_type(dataset.get()), H5Tclose);
-  const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  const auto count = static_cast<std::uint64_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space.get()), 0));
+  const std::uint64_t count = product_of(array.shape);
   const std::size_t value = size_of(*array.type);
   Bytes bytes(static_cast<std::size_t>(count) * value);
   const hid_t type = plain_type(stored.get()) ? stored.get() : H5T_NATIVE_DOUBLE;

@@ -74,7 +74,7 @@ class Hdf5Group {
  private:
   Hdf5Group(Hdf5Handle handle, std::string path, std::uint64_t file_size)
       : handle_(std::move(handle)), path_(std::move(path)), file_size_(file_size) {}
-  void check_size(hid_t dataset, const std::string& name) const;
+  void check_size(hid_t dataset, const NumberArray& array) const;
   Hdf5Handle handle_;
   std::string path_;
   std::uint64_t file_size_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "io/attributes.h"
 #include "io/text.h"
@@ -20,16 +21,22 @@ bool is_triple(const NumberArray& array) { return array.rows() && array.shape.si
 /// Places of the three single arrays that `component` says are x, y and z of a position.
 template <class ComponentOf>
 std::vector<std::size_t> singles(std::span<const NumberArray> arrays, ComponentOf component) {
-  std::array<std::vector<std::size_t>, 3> places;
+  std::vector<std::size_t> of_x;
+  std::map<std::uint64_t, std::size_t> of_y, of_z;  // the first of each length
   for (std::size_t i = 0; i < arrays.size(); ++i) {
     if (!is_single(arrays[i])) continue;
     const std::optional<Component> found = component(arrays[i].name);
-    if (found && found->base == "position") places[static_cast<std::size_t>(found->index)].push_back(i);
+    if (!found || found->base != "position") continue;
+    if (found->index == 0) {
+      of_x.push_back(i);
+    } else {
+      (found->index == 1 ? of_y : of_z).try_emplace(*arrays[i].rows(), i);
+    }
   }
-  for (const std::size_t x : places[0])
-    for (const std::size_t y : places[1])
-      for (const std::size_t z : places[2])
-        if (arrays[x].rows() == arrays[y].rows() && arrays[x].rows() == arrays[z].rows()) return {x, y, z};
+  for (const std::size_t x : of_x) {
+    const auto y = of_y.find(*arrays[x].rows()), z = of_z.find(*arrays[x].rows());
+    if (y != of_y.end() && z != of_z.end()) return {x, y->second, z->second};
+  }
   return {};
 }
 
@@ -54,12 +61,9 @@ std::optional<PositionArrays> find_positions(std::span<const NumberArray> arrays
   for (const std::string_view name : kNames)
     for (std::size_t i = 0; i < arrays.size(); ++i)
       if (is_triple(arrays[i]) && lower(arrays[i].name) == name) return PositionArrays{{i}, *arrays[i].rows()};
-  // A triple of long names: at most a few of each axis, so that the search is short.
-  if (arrays.size() <= 512) {
-    if (std::vector<std::size_t> places = singles(arrays, component_of); !places.empty()) {
-      const std::uint64_t count = *arrays[places[0]].rows();
-      return PositionArrays{std::move(places), count};
-    }
+  if (std::vector<std::size_t> places = singles(arrays, component_of); !places.empty()) {
+    const std::uint64_t count = *arrays[places[0]].rows();
+    return PositionArrays{std::move(places), count};
   }
   std::vector<std::size_t> triples;
   for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -186,17 +190,23 @@ Attribute attribute_of(const NumberArray& array) {
 void add_attributes(std::span<const NumberArray> arrays, const PositionArrays& found, Particles& particles) {
   std::string left_out;
   std::size_t more = 0;
+  std::vector<std::size_t> taken;
   for (std::size_t i = 0; i < arrays.size(); ++i) {
     if (std::find(found.places.begin(), found.places.end(), i) != found.places.end()) continue;
     const std::string why = why_no_attribute(arrays[i], found.count);
     if (why.empty()) {
-      particles.attributes.push_back(attribute_of(arrays[i]));
+      taken.push_back(i);
     } else if (left_out.size() > 200) {
       ++more;
     } else {
       left_out += fmt::format("{}'{}' {}", left_out.empty() ? "" : ", ", arrays[i].name.substr(0, 60), why);
     }
   }
+  const std::size_t before = particles.attributes.size();
+  particles.attributes.resize(before + taken.size());
+  parallel_for(taken.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) particles.attributes[before + i] = attribute_of(arrays[taken[i]]);
+  });
   if (left_out.empty()) return;
   particles.notes.push_back(
       fmt::format("left out arrays: {}{}", left_out, more > 0 ? fmt::format(" and {} more", more) : ""));

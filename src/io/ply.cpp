@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/attributes.h"
 #include "io/number_arrays.h"
 #include "io/ply_header.h"
 #include "io/readers.h"
@@ -81,25 +82,10 @@ class PlyReader {
     const std::array<std::size_t, 3> axes = axes_of(vertex);
     source_.require(position(), vertex.count, header_.ascii ? 2 * vertex.properties.size() - 1 : vertex.row_size(),
                     "vertices");
-    const auto count = static_cast<std::size_t>(vertex.count);
-    std::vector<std::vector<float>> columns(vertex.properties.size());
-    for (std::size_t p = 0; p < columns.size(); ++p)
-      if (!vertex.properties[p].list_count_type && axis_of(axes, p) < 0) columns[p].resize(count);
-
     if (header_.ascii || vertex.has_list()) {
-      std::vector<double> positions(3 * count);
-      read_one_by_one(vertex, axes, columns, positions);
-      set_positions(positions, options_, particles_);
+      read_one_by_one(vertex, axes);
     } else {
-      read_blocks(vertex, axes, columns);
-    }
-    for (std::size_t p = 0; p < columns.size(); ++p) {
-      const PlyProperty& property = vertex.properties[p];
-      if (property.list_count_type) {
-        particles_.notes.push_back(fmt::format("property '{}' is a list and was left out", property.name));
-      } else if (axis_of(axes, p) < 0) {
-        particles_.attributes.push_back({property.name, 1, std::move(columns[p])});
-      }
+      read_blocks(vertex, axes);
     }
     join_colour(vertex);
   }
@@ -125,10 +111,15 @@ class PlyReader {
   }
 
   /// Rows whose lengths are known only when they are read: text, and rows with lists.
-  void read_one_by_one(const PlyElement& vertex, const std::array<std::size_t, 3>& axes,
-                       std::vector<std::vector<float>>& columns, std::vector<double>& positions) {
+  void read_one_by_one(const PlyElement& vertex, const std::array<std::size_t, 3>& axes) {
+    const auto count = static_cast<std::size_t>(vertex.count);
+    std::vector<double> positions(3 * count);
+    std::vector<std::vector<float>> columns(vertex.properties.size());
     std::vector<int> axis(columns.size());
-    for (std::size_t p = 0; p < columns.size(); ++p) axis[p] = axis_of(axes, p);
+    for (std::size_t p = 0; p < columns.size(); ++p) {
+      axis[p] = axis_of(axes, p);
+      if (!vertex.properties[p].list_count_type && axis[p] < 0) columns[p].resize(count);
+    }
     for (std::size_t row = 0; row < vertex.count; ++row) {
       for (std::size_t p = 0; p < columns.size(); ++p) {
         const PlyProperty& property = vertex.properties[p];
@@ -141,6 +132,15 @@ class PlyReader {
         }
       }
     }
+    set_positions(positions, options_, particles_);
+    for (std::size_t p = 0; p < columns.size(); ++p) {
+      const PlyProperty& property = vertex.properties[p];
+      if (property.list_count_type) {
+        particles_.notes.push_back(fmt::format("property '{}' is a list and was left out", property.name));
+      } else if (axis[p] < 0) {
+        particles_.attributes.push_back({property.name, 1, std::move(columns[p])});
+      }
+    }
   }
 
   double value_of(const PlyProperty& property) {
@@ -150,21 +150,46 @@ class PlyReader {
     return read_value(property.type, header_.order, source_.bytes.data() + before);
   }
 
+  /// Three properties of one type that stand side by side and are the components of a vector: its name.
+  static std::optional<std::string> vector_at(const PlyElement& vertex, std::size_t p) {
+    if (p + 2 >= vertex.properties.size()) return std::nullopt;
+    std::optional<Component> parts[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (vertex.properties[p + c].type != vertex.properties[p].type) return std::nullopt;
+      parts[c] = component_of(vertex.properties[p + c].name);
+      if (!parts[c] || parts[c]->index != static_cast<int>(c) || parts[c]->base != parts[0]->base) return std::nullopt;
+    }
+    return parts[0]->base == "position" ? std::nullopt : std::optional(parts[0]->base);
+  }
+
   /// Rows of one size: converted in blocks.
-  void read_blocks(const PlyElement& vertex, const std::array<std::size_t, 3>& axes,
-                   std::vector<std::vector<float>>& columns) {
+  void read_blocks(const PlyElement& vertex, const std::array<std::size_t, 3>& axes) {
     const auto count = static_cast<std::size_t>(vertex.count);
     const std::size_t stride = vertex.row_size();
     const char* first = source_.bytes.data() + at_;
     std::vector<std::size_t> offsets;
     std::vector<RowPart> parts;
-    std::size_t offset = 0;
-    for (std::size_t p = 0; p < columns.size(); ++p) {
+    std::size_t offset = 0, inside = 0;  // properties to come that belong to a vector which has begun
+    for (std::size_t p = 0; p < vertex.properties.size(); ++p) {
       const Scalar type = vertex.properties[p].type;
-      if (axis_of(axes, p) < 0) parts.push_back({type, offset, 1, columns[p].data()});
       offsets.push_back(offset);
+      if (inside > 0) {
+        --inside;
+      } else if (axis_of(axes, p) < 0) {
+        const std::optional<std::string> vector = vector_at(vertex, p);
+        parts.push_back({type, offset, vector ? 3u : 1u, nullptr});
+        particles_.attributes.push_back({vector.value_or(vertex.properties[p].name), vector ? 3 : 1, {}});
+        if (vector) inside = 2;
+      }
       offset += size_of(type);
     }
+    // New memory costs as much time as the conversion: on all threads, too.
+    parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        particles_.attributes[i].values.resize(count * parts[i].components);
+        parts[i].target = particles_.attributes[i].values.data();
+      }
+    });
     read_rows(first, stride, header_.order, count, parts);
     std::array<NumberArray, 3> arrays;
     PositionArrays found{{0, 1, 2}, vertex.count};

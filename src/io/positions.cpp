@@ -45,7 +45,8 @@ glm::dvec3 origin_of(const Range& range, double scale) {
   const double round = std::pow(10.0, std::ceil(std::log10(spread)));
   for (int axis = 0; axis < 3; ++axis) {
     const double middle = 0.5 * (low[axis] + high[axis]);
-    if (std::abs(middle) > kFar * spread) origin[axis] = round * std::round(middle / round);
+    const double near = round * std::round(middle / round);
+    if (std::abs(middle) > kFar * spread && std::isfinite(near)) origin[axis] = near;
   }
   return origin;
 }
@@ -76,7 +77,8 @@ void set_positions(Scalar type, std::endian order, const std::array<Column, 3>& 
 }
 
 void set_positions(std::span<const double> values, const ReadOptions& options, Particles& particles) {
-  const char* first = reinterpret_cast<const char*>(values.data());
+  constexpr std::array<double, 3> kNone{};  // no values stand nowhere, and nowhere has no second column
+  const char* first = reinterpret_cast<const char*>(values.empty() ? kNone.data() : values.data());
   constexpr std::size_t kRow = 3 * sizeof(double);
   set_positions(Scalar::float64, std::endian::native,
                 {Column{first, kRow}, {first + sizeof(double), kRow}, {first + 2 * sizeof(double), kRow}},

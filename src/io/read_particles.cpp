@@ -3,6 +3,8 @@
 #include <new>
 
 #include "io/formats.h"
+#include "io/raw.h"
+#include "io/readable.h"
 #include "io/readers.h"
 
 namespace meniscus {
@@ -14,6 +16,10 @@ constexpr std::size_t kStart = std::size_t{1} << 12;  ///< bytes that tell a for
 
 Particles read_compressed(const Source& source, const ReadOptions& options) {
   Gunzip stream(source);
+  if (!options.raw.empty()) {
+    stream.grow_to(believable_size(source.bytes.size()) + 1);
+    return read_raw(Source{source.path, stream.bytes()}, options);
+  }
   stream.grow_to(kStart);
   const Source start{source.path, stream.bytes()};
   const Format& format = format_of(start);
@@ -24,7 +30,7 @@ Particles read_compressed(const Source& source, const ReadOptions& options) {
 }
 
 Particles read_any(const std::string& path, const ReadOptions& options) {
-  {
+  if (options.raw.empty()) {
     // Libraries read their formats by themselves: look at the first bytes before all are fetched.
     const Bytes bytes = read_file(path, kStart);
     const Source start{path, bytes.span()};
@@ -33,7 +39,8 @@ Particles read_any(const std::string& path, const ReadOptions& options) {
   }
   const Bytes bytes = read_file(path);
   const Source source{path, bytes.span()};
-  return source.starts_with("\x1f\x8b") ? read_compressed(source, options) : format_of(source).read(source, options);
+  if (source.starts_with("\x1f\x8b")) return read_compressed(source, options);
+  return options.raw.empty() ? format_of(source).read(source, options) : read_raw(source, options);
 }
 
 }  // namespace
@@ -50,6 +57,10 @@ Particles read_particles(const std::string& path, const ReadOptions& options) {
     Particles particles = read_any(path, options);
     finish(options, particles);
     return particles;
+  } catch (const Error& error) {
+    ErrorDetail detail = readable(error).detail();
+    if (detail.path.empty()) detail.path = path;  // of an option that does not fit this file
+    throw Error(error.code(), std::move(detail));
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::limit_exceeded,
                 {"there is not enough memory for the frame", {}, {}, path, {}, {}, "use fewer particles a frame"});

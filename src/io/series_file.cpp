@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "io/named_files.h"
+#include "io/readable.h"
 #include "io/series.h"
 #include "io/text.h"
 #include "io/vtk_xml_file.h"
@@ -17,7 +18,7 @@
 namespace meniscus::io {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 constexpr std::size_t kMostListed = 5;  ///< names in a note
 
 /// One line of a list.
@@ -141,7 +142,9 @@ bool is_json_series(const Source& start) {
          text.find("\"file-series-version\"") != std::string_view::npos;
 }
 
-FrameSequence frames_of_series(const std::string& path, const ReadOptions& options) {
+namespace {
+
+FrameSequence frames_listed(const std::string& path, const ReadOptions& options) {
   const Bytes bytes = read_file(path, kMostBytes);
   const Source source{path, bytes.span()};
   if (bytes.size() == kMostBytes) source.malformed("is far larger than a list of frames", kMostBytes);
@@ -174,7 +177,18 @@ FrameSequence frames_of_series(const std::string& path, const ReadOptions& optio
         ErrorCode::not_found,
         {entries.empty() ? "lists no frames" : "none of the frames that it lists is there", {}, {}, path, {}, {}, {}});
   set_numbers(sequence.frames);
+  for (std::string& note : sequence.notes) make_readable(note);
   return sequence;
+}
+
+}  // namespace
+
+FrameSequence frames_of_series(const std::string& path, const ReadOptions& options) {
+  try {
+    return frames_listed(path, options);
+  } catch (const Error& error) {
+    throw readable(error);
+  }
 }
 
 Particles refuse_series(const Source& source, const ReadOptions& /*options*/) {

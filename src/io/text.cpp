@@ -38,11 +38,12 @@ bool parse_count(std::string_view word, std::uint64_t& value) {
 }
 
 std::vector<std::string_view> words_of(std::string_view line) {
+  constexpr std::size_t kMost = 64;  // lines of headers have a few; a line as long as the file must not fill the memory
   std::vector<std::string_view> words;
   std::size_t at = 0;
   while (true) {
     while (at < line.size() && is_blank(line[at])) ++at;
-    if (at == line.size()) return words;
+    if (at == line.size() || words.size() == kMost) return words;
     const std::size_t start = at;
     while (at < line.size() && !is_blank(line[at])) ++at;
     words.push_back(line.substr(start, at - start));

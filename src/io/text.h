@@ -15,7 +15,7 @@ bool parse_number(std::string_view word, float& value);
 bool parse_number(std::string_view word, double& value);
 bool parse_count(std::string_view word, std::uint64_t& value);
 
-/// The words of a line, split at blanks.
+/// The words of a line, split at blanks; of very many the first 64.
 std::vector<std::string_view> words_of(std::string_view line);
 
 /// A position in a file's bytes that moves over words and lines.

@@ -154,7 +154,9 @@ class TableFinder {
     table_.columns = cells_.size();
     // Chemists' tables begin rows with the name of an element.
     double ignored = 0;
-    if (table_.declared_rows && read_cell(cells_[0], ignored) == CellKind::text) table_.position = {1, 2, 3};
+    const bool is_named = table_.declared_rows && read_cell(cells_[0], ignored) == CellKind::text;
+    if (is_named) table_.position = {1, 2, 3};
+    if (table_.columns < (is_named ? 4u : 3u)) fail(row, "a line has too few numbers", "x y z");
   }
 
   void refuse_decimal_commas(const Line& row) {
@@ -172,6 +174,7 @@ class TableFinder {
     if (row > first) {
       const Line& header = lines_[row - 1];
       fit = fit_of(header.text, lines_[row].text);
+      if (fit && fit->names.size() < 3) fit.reset();
       if (!fit && wanted_.are_in(names_of(header.text, separators_of(header.text).front())) &&
           separators_of(header.text).front() != kBlanks)
         fail(header, "the column names do not fit the first row",

@@ -97,7 +97,7 @@ void VtkArrays::read_points(VtkType type, std::uint64_t count, const ReadOptions
                   {Column{first, 3 * size}, {first + size, 3 * size}, {first + 2 * size, 3 * size}}, points, options,
                   particles);
     text_.seek(text_.at() + points * 3 * size);
-  } else if (type.scalar == Scalar::float32) {
+  } else if (type.scalar == Scalar::float32 && points > 0) {
     std::vector<float> values(3 * points);
     read_text(std::span<float>(values), "points");
     constexpr std::size_t kSize = sizeof(float);

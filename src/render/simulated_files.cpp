@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "meniscus/io.h"
 #include "meniscus/render.h"
 
 namespace meniscus {
@@ -114,7 +115,7 @@ SimulationReport write_simulation(SimulatedScene& scene, std::span<const BodyOpt
     frame.skipped = resume && is_whole(frame.output, particles);
     if (!frame.skipped) {
       const StageTimer timer(&frame.times, "write");
-      write_particles_ply(frame.output, particles);
+      write_particles(frame.output, particles);
     }
     frame.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     report.times.add(frame.times);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "meniscus/image.h"
+#include "meniscus/io.h"
 #include "meniscus/output.h"
 #include "meniscus/render.h"
 #include "program.h"
@@ -31,7 +32,7 @@ void write_waves(const Folder& folder, std::size_t particles, int frames) {
 /// A frame of a tank of water in a binary file.
 std::string write_tank(const Folder& folder, std::size_t count) {
   const std::string path = folder / "tank.ply";
-  write_particles_ply(path, synthetic_tank(count));
+  write_particles(path, synthetic_tank(count));
   return path;
 }
 

@@ -1,36 +1,19 @@
-// Whatever the bytes: a frame whose arrays fit together, or an Error that names the file. The format that is tried is
-// in the name of the program, fuzz_FORMAT; fuzz_any lets the bytes choose.
+// Whatever the bytes: a frame whose arrays fit together, or an Error that names the file. MENISCUS_FUZZ_FORMAT in the
+// environment is the format that is tried; "any" lets the bytes choose.
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <cstdlib>
+#include <array>
 #include <stdexcept>
 #include <string>
 
+#include "checks.h"
 #include "io/formats.h"
 #include "io/readers.h"
 
 namespace {
 
 using namespace meniscus;
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", what);
-  std::abort();
-}
-
-void check(const Particles& particles) {
-  require(particles.y.size() == particles.size() && particles.z.size() == particles.size(), "as many y and z as x");
-  for (std::size_t i = 0; i < particles.size(); ++i)
-    require(std::isfinite(particles.x[i]) && std::isfinite(particles.y[i]) && std::isfinite(particles.z[i]),
-            "finite positions");
-  for (const Attribute& attribute : particles.attributes)
-    require(attribute.components > 0 &&
-                attribute.values.size() == particles.size() * static_cast<std::size_t>(attribute.components),
-            "as many values as particles");
-}
 
 /// The bytes as a file without a place on the disk.
 class MemoryFile {
@@ -49,8 +32,16 @@ class MemoryFile {
   std::string path_;
 };
 
-Particles read_as(std::string_view name, const std::string& path, std::span<const char> bytes) {
-  const ReadOptions options;
+/// Options that the first bytes choose, for formats that depend on them.
+ReadOptions options_of(std::string_view format, const std::uint8_t* data, std::size_t size) {
+  ReadOptions options;
+  constexpr std::array kForms{"", "f32x3", "f64x3", "f32bex4", "f64bex7", "f32x4096"};
+  if (format == "raw" && size > 0) options.raw = kForms[data[0] % kForms.size()];
+  return options;
+}
+
+Particles read_as(std::string_view name, const std::string& path, std::span<const char> bytes,
+                  const ReadOptions& options) {
   for (const io::Format& format : io::formats())
     if (format.name == name) {
       Particles particles = format.read(io::Source{path, bytes}, options);
@@ -63,14 +54,16 @@ Particles read_as(std::string_view name, const std::string& path, std::span<cons
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string format = MENISCUS_FUZZ_FORMAT;
+  static const char* const chosen = std::getenv("MENISCUS_FUZZ_FORMAT");
+  const std::string format = chosen != nullptr ? chosen : "any";
   try {
     if (format == "any" || format == "hdf5") {
       const MemoryFile file(data, size);
       check(read_particles(file.path()));
+      io::look_at_frame(file.path(), {});
     } else {
       const std::string path = "frame." + format;
-      check(read_as(format, path, {reinterpret_cast<const char*>(data), size}));
+      check(read_as(format, path, {reinterpret_cast<const char*>(data), size}, options_of(format, data, size)));
     }
   } catch (const Error& error) {
     require(!error.detail().path.empty(), "an error that names the file");

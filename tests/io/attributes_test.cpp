@@ -43,6 +43,27 @@ TEST(AttributeNames, IncompleteVectorsStayAsTheyAre) {
   EXPECT_EQ(unified({scalar("u0"), scalar("v0"), scalar("w0"), scalar("x0")}), (Names{"u01", "v01", "w01", "x01"}));
 }
 
+TEST(AttributeNames, VectorsOfOneNameAreJoinedInTheirOrder) {
+  std::vector<Attribute> attributes{scalar("vx", 1), scalar("vy", 2), scalar("vx", 4), scalar("vz", 3),
+                                    scalar("id"),    scalar("vz", 6), scalar("vy", 5), scalar("vy", 7),
+                                    scalar("u"),     scalar("w"),     scalar("v")};
+  unify_names(attributes);
+  ASSERT_EQ(attributes.size(), 5u);
+  EXPECT_EQ(attributes[0].values, (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(attributes[1].values, (std::vector<float>{4, 5, 6}));
+  EXPECT_EQ(attributes[2].name, "id");
+  EXPECT_EQ(attributes[3].values, (std::vector<float>{7}));
+  EXPECT_EQ(attributes[4].components, 3) << "u, v and w";
+}
+
+TEST(AttributeNames, OfVeryManyTakeNoTimeToSpeakOf) {
+  // A file's header may name as many as its bytes allow: pairs of them are not to be looked at.
+  std::vector<Attribute> attributes;
+  for (int i = 0; i < 30'000; ++i) attributes.push_back(scalar("a" + std::to_string(i) + "_x"));
+  unify_names(attributes);
+  EXPECT_EQ(attributes.size(), 30'000u);
+}
+
 TEST(AttributeNames, VectorsAndDensitiesGetTheirCommonNames) {
   for (const char* name : {"v", "vel", "Vel", "VELOCITY", "Velocities"}) {
     EXPECT_EQ(unified({{name, 3, {1, 2, 3}}}), (Names{"velocity3"})) << name;

@@ -121,6 +121,11 @@ TEST(Hdf5, OfAnotherLayoutSaysWhichArraysThereAre) {
             ErrorCode::unsupported);
 }
 
+TEST(Hdf5, OfAnyPrefixIsRefused) {
+  const std::string gadget = bytes_of_file(sample("gadget.hdf5"));
+  check_prefixes("f.hdf5", gadget, gadget.size(), 41);
+}
+
 TEST(Hdf5, OfGroupsInCirclesIsRead) { expect_small(read_particles(sample("circle.hdf5")), false); }
 
 TEST(Hdf5, IsToldFromItsContentUnderAnyName) {

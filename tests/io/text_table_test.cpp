@@ -170,6 +170,8 @@ TEST(TextTable, NamesTheLineThatHasAnotherNumberOfColumns) {
     EXPECT_EQ(error.detail().line, 3u) << text;
   }
   EXPECT_EQ(refused_text("x,y,z,p\n1,2,3\n").code(), ErrorCode::malformed_file);
+  EXPECT_EQ(refused_text("1;2;\n3;4;\n").detail().line, 1u) << "what is behind the last separator is no column";
+  EXPECT_EQ(refused_text("a;b\n1;2;\n").detail().line, 2u);
   EXPECT_EQ(refused_text("x,y,z\n1,,3\n").detail().line, 2u) << "a coordinate is missing";
 }
 

@@ -24,13 +24,19 @@ bool is_read(const std::string& path) {
 const std::vector<std::string> kSamples{"ascii.vtp",       "inline_64.vtp",       "inline_zlib.vtu", "raw_big.vtu",
                                         "raw_zlib_64.vtu", "base64_zlib_big.vtu", "base64_64.vtp",   "two_pieces.vtu"};
 
+#ifdef MENISCUS_SANITIZED
+constexpr std::size_t kStep = 7;  // of all bytes: each file takes ten times as long there
+#else
+constexpr std::size_t kStep = 1;
+#endif
+
 TEST(EveryPrefix, OfVtkXmlIsRefusedUntilItIsWhole) {
   const Scratch scratch;
   for (const std::string& name : kSamples) {
     const std::string bytes = bytes_of_file(sample(name));
     const std::size_t whole = bytes.rfind("</VTKFile") + 9;
     ASSERT_TRUE(is_read(scratch.write(name, bytes)));
-    for (std::size_t size = 0; size < whole; ++size)
+    for (std::size_t size = 0; size < whole; size += kStep)
       ASSERT_FALSE(is_read(scratch.write(name, std::string_view(bytes).substr(0, size)))) << name << ": " << size;
   }
 }
@@ -39,7 +45,7 @@ TEST(EveryChangedByte, OfVtkXmlIsReadOrRefused) {
   const Scratch scratch;
   for (const std::string& name : kSamples) {
     const std::string bytes = bytes_of_file(sample(name));
-    for (std::size_t at = 0; at < bytes.size(); ++at) {
+    for (std::size_t at = 0; at < bytes.size(); at += kStep) {
       std::string damaged = bytes;
       damaged[at] = static_cast<char>(damaged[at] ^ (at % 2 == 0 ? 0x01 : 0xff));
       is_read(scratch.write(name, damaged));

@@ -109,6 +109,31 @@ TEST(VtkXml, LeavesOutGhostsAndArraysThatNotAllPiecesHave) {
   EXPECT_EQ(particles.notes.size(), 2u);
 }
 
+TEST(VtkXml, NamesThePlaceOfAFaultBehindLongTexts) {
+  const Scratch scratch;
+  std::string values;
+  for (int i = 0; i < 9000; ++i) values += fmt::format(" {}", i % 10);
+  const auto array = [&](const char* name, const char* type) {
+    return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"3\">{}</DataArray>", type, name,
+                       values);
+  };
+  const std::string text = grid("3000", "<Points>" + array("p", "Float32") + "</Points><PointData>" +
+                                            array("a>b", "Int8") + array("b", "Int8") + "</PointData>");
+  const Particles particles = read_text(text);
+  EXPECT_EQ(particles.position(2999), vec3(7, 8, 9));
+  EXPECT_EQ(particles.find("a>b")->values[8999], 9.0f);
+  std::string damaged = text;
+  damaged[damaged.rfind(" 7 8 9") + 1] = 'x';
+  EXPECT_EQ(refused(scratch.write("f.vtu", damaged)).detail().byte_offset, damaged.find('x', damaged.find("\"b\"")));
+  std::string mismatched = text;
+  mismatched.replace(mismatched.rfind("</DataArray"), 3, "</E");
+  EXPECT_GT(refused(scratch.write("f.vtu", mismatched)).detail().byte_offset, mismatched.find("</E") - 10);
+  // Comments may hold what looks like a tag.
+  std::string commented = text;
+  commented.insert(commented.find("<PointData>"), "<!-- > " + std::string(5000, '-' + 1) + " -->");
+  EXPECT_EQ(read_text(commented).find("b")->values[8999], 9.0f);
+}
+
 TEST(VtkXml, OfNoPointsIsAnEmptyFrame) {
   EXPECT_TRUE(read_text(grid("0", "")).empty());
   EXPECT_TRUE(read_text(grid(" 0 ", "<Points><DataArray type=\"Float32\"/></Points>")).empty());

@@ -188,6 +188,11 @@ def write_hdf5():
         file["a/b/c/points"] = POSITION
         file["a/b/again"] = file["a"]
         file["a/soft"] = h5py.SoftLink("/a/b")
+    # In the older form, which has no checksums: damage reaches the reader.
+    with h5py.File(HERE / "rank2.hdf5", "w") as file:
+        file["pos"], file["mass"] = np.arange(21.0).reshape(7, 3), np.ones(7, "f4")
+    with h5py.File(HERE / "packed.hdf5", "w") as file:
+        file.create_dataset("pos", data=np.arange(21.0).reshape(7, 3), chunks=(7, 3), compression="gzip")
     with h5py.File(HERE / "absurd.hdf5", "w", libver="latest") as file:
         # Claims 2^40 values, stores none.
         for key in "xyz":
