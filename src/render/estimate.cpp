@@ -59,7 +59,7 @@ Frames frames_in_files(const FrameSequence& sequence) {
   std::size_t failed = 0, understood = 0;
   for (const std::size_t place : places) {
     try {
-      const io::FrameHead head = io::look_at_frame(sequence.frames[place].path);
+      const io::FrameHead head = io::look_at_frame(sequence.frames[place].path, sequence.reading);
       ++understood;
       particles += static_cast<double>(head.particles);
       bytes += static_cast<double>(head.file_bytes);
