@@ -6,7 +6,7 @@
 #include "io/frame_head.h"
 #include "io/positions.h"
 #include "io/readers.h"
-#include "io/rows.h"
+#include "io/unwritten.h"
 
 namespace meniscus::io {
 namespace {
@@ -131,9 +131,6 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
   const char* first = source.bytes.data() + header.first_point;
   Particles particles;
   particles.format = "bgeo";
-  set_positions(Scalar::float32, std::endian::big,
-                {Column{first, stride}, {first + kWord, stride}, {first + 2 * kWord, stride}}, count, options,
-                particles);
   std::size_t word = 4;  // the fourth is the homogeneous w, 1
   std::vector<RowPart> parts;
   for (const PointAttribute& description : header.attributes) {
@@ -150,14 +147,13 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
           fmt::format("attribute '{}' gives its texts as numbers: {}", description.name, description.texts));
     word += description.words;
   }
-  // New memory costs as much time as the conversion: on all threads, too.
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      particles.attributes[i].values.resize(count * parts[i].components);
-      parts[i].target = particles.attributes[i].values.data();
-    }
-  });
-  read_rows(first, stride, std::endian::big, count, parts);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    resize_unwritten(particles.attributes[i].values, count * parts[i].components);
+    parts[i].target = particles.attributes[i].values.data();
+  }
+  set_positions(Scalar::float32, std::endian::big,
+                {Column{first, stride}, {first + kWord, stride}, {first + 2 * kWord, stride}}, count, options,
+                particles, {first, stride, parts});
   if (header.primitives > 0) {
     particles.notes.push_back(fmt::format("{} primitives were left out: only the points are read", header.primitives));
   }

@@ -7,6 +7,7 @@
 
 #include "io/attributes.h"
 #include "io/text.h"
+#include "io/unwritten.h"
 
 namespace meniscus::io {
 namespace {
@@ -172,18 +173,22 @@ void set_positions(std::span<const NumberArray> arrays, const PositionArrays& fo
 Attribute attribute_of(const NumberArray& array) {
   const auto rows = static_cast<std::size_t>(array.rows().value_or(0));
   const std::size_t columns = array.columns();
-  Attribute attribute{array.name, static_cast<int>(columns), std::vector<float>(rows * columns)};
+  Attribute attribute{array.name, static_cast<int>(columns), {}};
+  resize_unwritten(attribute.values, rows * columns);
   float* target = attribute.values.data();
   if (columns == 1 || array.step == size_of(*array.type)) {
     read_columns(*array.type, array.order, array.first, array.stride, rows, columns, target);
     return attribute;
   }
   // Column after column, as Fortran stores them.
-  std::vector<float> one(rows);
-  for (std::size_t c = 0; c < columns; ++c) {
-    read_columns(*array.type, array.order, array.first + c * array.step, array.stride, rows, 1, one.data());
-    for (std::size_t i = 0; i < rows; ++i) target[i * columns + c] = one[i];
-  }
+  parallel_for(rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::array<float, kRowsAtOnce> one;
+    for (std::size_t c = 0; c < columns; ++c) {
+      const char* first = array.first + c * array.step + begin * array.stride;
+      read_columns(*array.type, array.order, first, array.stride, end - begin, 1, one.data());
+      for (std::size_t i = begin; i < end; ++i) target[i * columns + c] = one[i - begin];
+    }
+  });
   return attribute;
 }
 

@@ -9,8 +9,8 @@
 #include "io/number_arrays.h"
 #include "io/ply_header.h"
 #include "io/readers.h"
-#include "io/rows.h"
 #include "io/text.h"
+#include "io/unwritten.h"
 
 namespace meniscus::io {
 namespace {
@@ -183,14 +183,21 @@ class PlyReader {
       }
       offset += size_of(type);
     }
-    // New memory costs as much time as the conversion: on all threads, too.
-    parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        particles_.attributes[i].values.resize(count * parts[i].components);
-        parts[i].target = particles_.attributes[i].values.data();
-      }
-    });
-    read_rows(first, stride, header_.order, count, parts);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      resize_unwritten(particles_.attributes[i].values, count * parts[i].components);
+      parts[i].target = particles_.attributes[i].values.data();
+    }
+    const RowParts rows{first, stride, parts};
+    const Scalar type = vertex.properties[axes[0]].type;
+    if (std::all_of(axes.begin(), axes.end(), [&](std::size_t p) { return vertex.properties[p].type == type; })) {
+      set_positions(type, header_.order,
+                    {Column{first + offsets[axes[0]], stride},
+                     {first + offsets[axes[1]], stride},
+                     {first + offsets[axes[2]], stride}},
+                    count, options_, particles_, rows);
+      return;
+    }
+    read_rows(rows, header_.order, count);
     std::array<NumberArray, 3> arrays;
     PositionArrays found{{0, 1, 2}, vertex.count};
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "io/unwritten.h"
+
 namespace meniscus::io {
 namespace {
 
@@ -54,26 +56,30 @@ glm::dvec3 origin_of(const Range& range, double scale) {
 }  // namespace
 
 void set_positions(Scalar type, std::endian order, const std::array<Column, 3>& columns, std::size_t rows,
-                   const ReadOptions& options, Particles& particles) {
+                   const ReadOptions& options, Particles& particles, const RowParts& beside) {
   const std::array<std::vector<float>*, 3> targets{&particles.x, &particles.y, &particles.z};
-  for (std::vector<float>* target : targets) target->resize(rows);
+  for (std::vector<float>* target : targets) resize_unwritten(*target, rows);
   const bool wide = size_of(type) > 4 || type == Scalar::int32 || type == Scalar::uint32;
   particles.origin = options.origin.value_or(glm::dvec3{0.0});
   if (wide && !options.origin && rows > 0)
     particles.origin = origin_of(range_of(type, order, columns, rows), options.scale);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Column& column = columns[axis];
-    float* target = targets[axis]->data();
-    const double origin = particles.origin[static_cast<glm::length_t>(axis)], scale = options.scale;
-    if (origin == 0 && scale == 1) {
-      read_columns(type, order, column.first, column.stride, rows, 1, target);
-      continue;
+  const double scale = options.scale;
+  // Block by block: interleaved columns come from memory once.
+  parallel_for(rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    read_rows(beside, order, begin, end);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Column& column = columns[axis];
+      const double origin = particles.origin[static_cast<glm::length_t>(axis)];
+      const char* first = column.first + begin * column.stride;
+      float* target = targets[axis]->data() + begin;
+      if (origin == 0 && scale == 1) {
+        read_columns(type, order, first, column.stride, end - begin, 1, target);
+        continue;
+      }
+      for (std::size_t row = 0; row < end - begin; ++row)
+        target[row] = static_cast<float>(read_value(type, order, first + row * column.stride) * scale - origin);
     }
-    parallel_for(rows, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end; ++row)
-        target[row] = static_cast<float>(read_value(type, order, column.first + row * column.stride) * scale - origin);
-    });
-  }
+  });
 }
 
 void set_positions(std::span<const double> values, const ReadOptions& options, Particles& particles) {

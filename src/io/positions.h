@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "io/values.h"
+#include "io/rows.h"
 #include "meniscus/io.h"
 
 namespace meniscus::io {
@@ -17,8 +17,9 @@ struct Column {
 /// Fills x, y, z and origin of particles from three columns of one type.
 /// Floats without a scale are taken over bit by bit. Of doubles the origin is options.origin, else zero, or a round
 /// number amidst the positions where they are more than kFar times as far away as they are spread.
+/// @param beside  other values of the same rows, which are converted in the same pass
 void set_positions(Scalar type, std::endian order, const std::array<Column, 3>& columns, std::size_t rows,
-                   const ReadOptions& options, Particles& particles);
+                   const ReadOptions& options, Particles& particles, const RowParts& beside = {});
 
 /// The same from interleaved doubles that a reader has parsed (text): 3 a row.
 void set_positions(std::span<const double> values, const ReadOptions& options, Particles& particles);

@@ -2,14 +2,14 @@
 
 namespace meniscus::io {
 
-void read_rows(const char* first, std::size_t stride, std::endian order, std::size_t rows,
-               std::span<const RowPart> parts) {
-  constexpr std::size_t kBlock = 4096;
-  parallel_for(rows, kBlock, [&](std::size_t begin, std::size_t end) {
-    for (const RowPart& part : parts)
-      read_columns(part.type, order, first + begin * stride + part.offset, stride, end - begin, part.components,
-                   part.target + begin * part.components);
-  });
+void read_rows(const RowParts& rows, std::endian order, std::size_t begin, std::size_t end) {
+  for (const RowPart& part : rows.parts)
+    read_columns(part.type, order, rows.first + begin * rows.stride + part.offset, rows.stride, end - begin,
+                 part.components, part.target + begin * part.components);
+}
+
+void read_rows(const RowParts& rows, std::endian order, std::size_t count) {
+  parallel_for(count, kRowsAtOnce, [&](std::size_t begin, std::size_t end) { read_rows(rows, order, begin, end); });
 }
 
 }  // namespace meniscus::io

@@ -1,6 +1,7 @@
 #include "io/values.h"
 
 #include <cstring>
+#include <type_traits>
 
 namespace meniscus::io {
 namespace {
@@ -37,13 +38,41 @@ T load(const char* from) {
   return std::bit_cast<T>(word);
 }
 
+/// Values that stand side by side: a loop that compilers turn into vector instructions.
 template <class T, bool kSwap>
-void convert(const char* first, std::size_t stride, std::size_t begin, std::size_t end, std::size_t components,
-             float* target) {
-  for (std::size_t row = begin; row < end; ++row) {
+void convert_run(const char* first, std::size_t count, float* target) {
+  if constexpr (std::is_same_v<T, float> && !kSwap) {
+    std::memcpy(target, first, count * sizeof(T));
+  } else {
+    for (std::size_t i = 0; i < count; ++i) target[i] = static_cast<float>(load<T, kSwap>(first + i * sizeof(T)));
+  }
+}
+
+/// Rows of kComponents values; 0: of `components`.
+template <class T, bool kSwap, std::size_t kComponents>
+void convert_rows(const char* first, std::size_t stride, std::size_t rows, std::size_t components, float* target) {
+  if constexpr (kComponents > 0) components = kComponents;
+  for (std::size_t row = 0; row < rows; ++row) {
     const char* from = first + row * stride;
     float* to = target + row * components;
     for (std::size_t c = 0; c < components; ++c) to[c] = static_cast<float>(load<T, kSwap>(from + c * sizeof(T)));
+  }
+}
+
+template <class T, bool kSwap>
+void convert(const char* first, std::size_t stride, std::size_t begin, std::size_t end, std::size_t components,
+             float* target) {
+  first += begin * stride;
+  target += begin * components;
+  const std::size_t rows = end - begin;
+  if (stride == components * sizeof(T)) {
+    convert_run<T, kSwap>(first, rows * components, target);
+  } else if (components == 1) {
+    convert_rows<T, kSwap, 1>(first, stride, rows, components, target);
+  } else if (components == 3) {
+    convert_rows<T, kSwap, 3>(first, stride, rows, components, target);
+  } else {
+    convert_rows<T, kSwap, 0>(first, stride, rows, components, target);
   }
 }
 

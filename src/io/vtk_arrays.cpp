@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "io/text_numbers.h"
+#include "io/unwritten.h"
 
 namespace meniscus::io {
 namespace {
@@ -68,12 +69,14 @@ std::vector<float> VtkArrays::read(VtkType type, std::uint64_t tuples, std::uint
     return {};
   }
   const auto count = static_cast<std::size_t>(checked_size(type, tuples, components, what));
-  std::vector<float> values(count);
+  std::vector<float> values;
   if (binary_) {
+    resize_unwritten(values, count);
     const std::size_t size = size_of(type.scalar);
     read_columns(type.scalar, std::endian::big, source_.bytes.data() + text_.at(), size, count, 1, values.data());
     text_.seek(text_.at() + count * size);
   } else {
+    values.resize(count);
     read_text(std::span<float>(values), what);
   }
   return values;

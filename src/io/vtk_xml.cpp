@@ -11,6 +11,7 @@
 #include "io/positions.h"
 #include "io/series_file.h"
 #include "io/text.h"
+#include "io/unwritten.h"
 #include "io/vtk_xml_file.h"
 
 namespace meniscus::io {
@@ -53,7 +54,7 @@ void read_attributes(const VtkXmlFile& file, const XmlElement& data, std::uint64
     const std::uint64_t components = xml_count(file.source, array, "NumberOfComponents", 1);
     const VtkXmlArray values = arrays.read(array, count, components);
     attribute.components = static_cast<int>(components);
-    attribute.values.resize(static_cast<std::size_t>(count * components));
+    resize_unwritten(attribute.values, static_cast<std::size_t>(count * components));
     read_columns(values.type, values.order, values.bytes.data(), size_of(values.type), attribute.values.size(), 1,
                  attribute.values.data());
     particles.attributes.push_back(std::move(attribute));

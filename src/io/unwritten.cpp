@@ -1,0 +1,31 @@
+#include "io/unwritten.h"
+
+namespace meniscus::io {
+
+#if defined(__GLIBCXX__) && !defined(_GLIBCXX_DEBUG) && !defined(_GLIBCXX_SANITIZE_VECTOR)
+
+namespace {
+
+/// A class derived from vector may name its protected members: a vector of libstdc++ ends where _M_finish says.
+struct OpenVector : std::vector<float> {
+  static void end_at(std::vector<float>& values, std::size_t size) {
+    auto& memory = values.*(&OpenVector::_M_impl);
+    memory._M_finish = memory._M_start + size;
+  }
+};
+
+}  // namespace
+
+void resize_unwritten(std::vector<float>& values, std::size_t size) {
+  values.clear();
+  values.reserve(size);
+  OpenVector::end_at(values, size);
+}
+
+#else
+
+void resize_unwritten(std::vector<float>& values, std::size_t size) { values.resize(size); }
+
+#endif
+
+}  // namespace meniscus::io
