@@ -56,12 +56,8 @@ const std::array kFormats{
 
 const std::vector<Writer> kWriters{
     // In the order in which messages list them.
-    {".npz", write_npz},
-    {".ply", write_ply},
-    {".bgeo", write_bgeo},
-    {".bgeo.gz", write_bgeo},
-    {".vtp", write_vtp},
-    {".csv", write_csv},
+    {".npz", write_npz},      {".ply", write_ply}, {".bgeo", write_bgeo},
+    {".bgeo.gz", write_bgeo}, {".vtp", write_vtp}, {".csv", write_csv},
 };
 
 /// The name without directories, in lower case and without .gz.
@@ -111,10 +107,13 @@ const Format& format_of(const Source& start) {
     if (is_marked(format) && named(format))
       start.malformed(fmt::format("is named {} but is not {}", format.endings.front(), format.title), 0, {},
                       shown_start(start.bytes));
-  for (const std::string_view extension : {".pdb", ".pda", ".bin"})
+  for (const std::string_view extension : {".pdb", ".pda"})
     if (name.ends_with(extension) && !is_text(start))
-      start.unsupported(fmt::format("is a {} file of Maya or RealFlow, which is not read", extension),
+      start.unsupported(fmt::format("is a {} file of Maya, which is not read", extension),
                         "convert it with Partio: partconvert FILE FILE.bgeo");
+  if (name.ends_with(".bin") && !is_text(start))
+    start.unsupported("is a .bin file, which is not read: RealFlow's, or a program's own",
+                      "RealFlow: partconvert FILE FILE.bgeo of Partio; plain numbers: --raw f32x3");
   for (const std::string_view extension : {".obj", ".stl", ".abc", ".vdb", ".usd", ".png"})
     if (name.ends_with(extension)) start.unsupported(fmt::format("a {} file holds no particles to read", extension));
   for (const Format& format : kFormats)
