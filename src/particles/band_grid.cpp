@@ -374,6 +374,9 @@ class BandGrid::Build {
   }
 
   static constexpr std::uint32_t kLeftOut = 0xffffffffu;
+  /// Of a cell. A lattice of two particles along a cell, as simulations begin with, would lie on the cells' sides, where
+  /// rounding makes some nearly empty and others too full.
+  static constexpr float kBelow = 0.25f;
   static constexpr Kind hidden_ = BandGrid::hidden;
 
   BandGrid& grid_;

@@ -26,10 +26,6 @@ class BandGrid {
  public:
   /// Particles that may be read (not used) past the end of the sorted arrays: those are far away.
   static constexpr std::size_t kPadding = 16;
-  /// Cells are counted from so many cells below the lowest particle: a lattice of two particles along a cell, as
-  /// simulations begin with, would else lie on the cells' sides, where rounding makes some too full and others nearly
-  /// empty.
-  static constexpr float kBelow = 0.25f;
   static constexpr int kSide = 8;                       ///< cells along a block
   static constexpr int kCells = kSide * kSide * kSide;  ///< in a block
   enum Kind : std::uint8_t { open = 0, hidden = 1, deep = 2 };
@@ -49,7 +45,7 @@ class BandGrid {
   std::size_t size() const { return kept_; }        ///< particles kept
   std::size_t counted() const { return counted_; }  ///< all particles
   float cell_size() const { return cell_size_; }
-  /// Of all particles; the low corner, which cells are counted from, lies kBelow cells lower.
+  /// Of all particles; the low corner, which cells are counted from, lies a quarter of a cell lower.
   const Bounds& bounds() const { return bounds_; }
 
   /// Positions of the kept particles in sorted order, m; size() + kPadding values.

@@ -104,7 +104,7 @@ class SlabSurface final : public Surface {
                                const std::vector<Slab> slabs = slabs_for(view);
                                const float cell = smoothing_length_of(options_);
                                const auto cell_at = [&](const Slab& slab, float border) {
-                                 return static_cast<int>(std::lround((border - cells_from(slab.axis)) / cell));
+                                 return static_cast<int>(std::lround((border - bounds_.low[slab.axis]) / cell));
                                };
                                for (std::size_t k = 0; k < slabs.size(); ++k) {
                                  const Slab& slab = slabs[k];
@@ -122,9 +122,6 @@ class SlabSurface final : public Surface {
   Bounds bounds() const override { return bounds_.grown(smoothing_length_of(options_)); }
 
  private:
-  /// Where the cells of the whole's grid begin along an axis, m.
-  float cells_from(int axis) const { return bounds_.low[axis] - BandGrid::kBelow * smoothing_length_of(options_); }
-
   float filter_tolerance() const { return 0.5f * options_.spacing; }
 
   SurfaceBuffers empty_buffers(int width, int height) const {
@@ -169,7 +166,7 @@ class SlabSurface final : public Surface {
   void add_water(const WaterShare& share, const SplatCamera& camera, Image<float>& sums) const {
     // Which cells lie amidst water is told by those around them.
     const float cell = smoothing_length_of(options_), margin = margin_of(options_) + cell;
-    const float origin = cells_from(share.axis);
+    const float origin = bounds_.low[share.axis];
     const float begin = origin + cell * static_cast<float>(share.first),
                 end = origin + cell * static_cast<float>(share.end);
     const bool first = share.first <= 0, last = end >= bounds_.high[share.axis] - 0.01f * cell;
