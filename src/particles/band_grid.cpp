@@ -53,7 +53,6 @@ class BandGrid::Build {
   void set_size() {
     BandGrid& g = grid_;
     g.bounds_ = bounds_of(particles_, boxes_);
-    g.bounds_.low -= kBelow * g.cell_size_;
     const vec3 extent = g.bounds_.extent();
     const float longest = std::max({extent.x, extent.y, extent.z});
     if (!(longest * g.per_cell_ < kMostBlocksAlongAxis * kSide))
@@ -374,9 +373,6 @@ class BandGrid::Build {
   }
 
   static constexpr std::uint32_t kLeftOut = 0xffffffffu;
-  /// Of a cell. A lattice of two particles along a cell, as simulations begin with, would lie on the cells' sides, where
-  /// rounding makes some nearly empty and others too full.
-  static constexpr float kBelow = 0.25f;
   static constexpr Kind hidden_ = BandGrid::hidden;
 
   BandGrid& grid_;

@@ -45,8 +45,7 @@ class BandGrid {
   std::size_t size() const { return kept_; }        ///< particles kept
   std::size_t counted() const { return counted_; }  ///< all particles
   float cell_size() const { return cell_size_; }
-  /// Of all particles; the low corner, which cells are counted from, lies a quarter of a cell lower.
-  const Bounds& bounds() const { return bounds_; }
+  const Bounds& bounds() const { return bounds_; }  ///< of all particles
 
   /// Positions of the kept particles in sorted order, m; size() + kPadding values.
   const float* x() const { return x_.get(); }
