@@ -1,10 +1,12 @@
 #include "commands.h"
+#include "freed_memory.h"
 
 namespace meniscus::apps {
 
 void add_bench(CLI::App& program) {
   CLI::App* bench = program.add_subcommand("bench", "Measure stages on made-up scenes");
   bench->require_subcommand(1);
+  bench->parse_complete_callback([] { keep_freed_memory(); });
   add_bench_raycast(*bench);
   add_bench_table1(*bench);
   add_bench_temporal(*bench);

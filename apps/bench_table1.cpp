@@ -201,8 +201,7 @@ Json measure(const Table1Arguments& arguments) {
     if (!fits(count, sizes, notes)) continue;
     try {
       const Particles crown = synthetic_crown(count);
-      if (!arguments.frames.empty())
-        write_particles(fmt::format("{}/crown_{}.ply", arguments.frames, count), crown);
+      if (!arguments.frames.empty()) write_particles(fmt::format("{}/crown_{}.ply", arguments.frames, count), crown);
       for (Json& row : rows_of(crown, sizes, repeats_of(count, arguments.repeat), arguments.frames))
         rows.push_back(std::move(row));
     } catch (const std::bad_alloc&) {

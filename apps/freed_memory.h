@@ -4,9 +4,6 @@
 namespace meniscus::apps {
 
 /// It is kept for the next frame, whose buffers have the same sizes: having the system clear it anew takes an eighth of
-/// the time of a small frame.
+/// the time of a small frame. Not for runs that must stay below a limit.
 void keep_freed_memory();
-/// It goes back to the system at once, as is usual: where the whole process must stay below a limit.
-void return_freed_memory();
-
 }  // namespace meniscus::apps

@@ -144,7 +144,7 @@ void render(RenderArguments& arguments) {
   }
   check_memory(sequence, picture, arguments.sequence, made_particles);
   check_output(sequence, arguments.sequence);
-  if (arguments.memory_limit > 0) return_freed_memory();
+  if (arguments.memory_limit == 0) keep_freed_memory();
   hold_memory_below(arguments.memory_limit);
   if (!arguments.report_path.empty()) write_text(arguments.report_path, "{}\n");
 

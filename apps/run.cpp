@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "commands.h"
-#include "freed_memory.h"
 #include "meniscus/base.h"
 #include "meniscus/output.h"
 
@@ -55,7 +54,6 @@ std::string command_path(const CLI::App& program) {
 }  // namespace
 
 int run(int argc, char** argv) {
-  keep_freed_memory();
   remove_temporary_files_when_stopped();
   CLI::App program("Pictures and films of water from the particles of a simulation", "meniscus");
   program.formatter(std::make_shared<Help>());

@@ -15,8 +15,8 @@ namespace meniscus {
 namespace {
 
 constexpr int kTile = 32;             ///< px
-constexpr float kLeastRadius = 0.7f;  ///< px; smaller discs are drawn so wide, and fainter
-constexpr int kSteps = 4;             ///< towards the pixel in which a disc behind the surface is seen
+constexpr float kLeastRadius = 1.5f;  ///< px; smaller discs are drawn so wide, and fainter
+constexpr int kSteps = 8;             ///< towards the pixel in which a disc behind the surface is seen
 
 /// A disc in the picture.
 struct Disc {
