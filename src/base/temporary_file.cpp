@@ -130,6 +130,7 @@ TemporaryStream::~TemporaryStream() {
 }
 
 void TemporaryStream::write(std::span<const char> bytes) {
+  if (bytes.empty()) return;
   errno = 0;
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) throw write_failed(file_.target(), errno);
 }

@@ -56,6 +56,7 @@ TEST(FrameFollower, GivesAFrameOnceItIsWhole) {
 TEST(FrameFollower, GivesEachFrameOnceAndInOrder) {
   const Scratch scratch;
   for (const int number : {1, 2, 10}) scratch.write("f_" + std::to_string(number) + ".xyz", "0 0 0\n");
+  sleep(2 * kSettle);
   FrameFollower follower({scratch.path("f_{}.xyz")}, {}, quick());
   const FrameSequence first = follower.first();
   ASSERT_EQ(first.frames.size(), 3u);
