@@ -5,15 +5,15 @@
 namespace meniscus::apps {
 namespace {
 
-constexpr int kKeepUpTo = 2'000'000'000;  ///< bytes at the end of the heap
-constexpr int kGrowBy = 64 << 20;         ///< bytes
+// Larger arrays, those of many particles, come from the system each time, in large pages; glibc allows no more.
+constexpr int kLargest = 32 << 20;    ///< bytes
+constexpr int kKeepUpTo = 512 << 20;  ///< bytes at the end of the heap
 
 }  // namespace
 
 void keep_freed_memory() {
-  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_MMAP_THRESHOLD, kLargest);
   mallopt(M_TRIM_THRESHOLD, kKeepUpTo);
-  mallopt(M_TOP_PAD, kGrowBy);
 }
 
 }  // namespace meniscus::apps
