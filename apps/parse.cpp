@@ -41,6 +41,15 @@ bool read_integer(std::string_view text, Integer& value) {
   return result.ec == std::errc() && result.ptr == text.data() + text.size();
 }
 
+template <class Vector>
+Vector parse_three(std::string_view option, std::string_view text) {
+  const auto parts = split(text, ',');
+  Vector v{0};
+  if (parts.size() != 3 || !read(parts[0], v.x) || !read(parts[1], v.y) || !read(parts[2], v.z))
+    refuse(option, text, "three numbers with commas between");
+  return v;
+}
+
 }  // namespace
 
 PictureSize parse_size(std::string_view option, std::string_view text) {
@@ -94,21 +103,9 @@ PointLight parse_lamp(std::string_view option, std::string_view text) {
   return lamp;
 }
 
-glm::vec3 parse_vec3(std::string_view option, std::string_view text) {
-  const auto parts = split(text, ',');
-  glm::vec3 v{0};
-  if (parts.size() != 3 || !read(parts[0], v.x) || !read(parts[1], v.y) || !read(parts[2], v.z))
-    refuse(option, text, "three numbers with commas between");
-  return v;
-}
+glm::vec3 parse_vec3(std::string_view option, std::string_view text) { return parse_three<glm::vec3>(option, text); }
 
-glm::dvec3 parse_dvec3(std::string_view option, std::string_view text) {
-  const auto parts = split(text, ',');
-  glm::dvec3 v{0};
-  if (parts.size() != 3 || !read(parts[0], v.x) || !read(parts[1], v.y) || !read(parts[2], v.z))
-    refuse(option, text, "three numbers with commas between");
-  return v;
-}
+glm::dvec3 parse_dvec3(std::string_view option, std::string_view text) { return parse_three<glm::dvec3>(option, text); }
 
 glm::vec2 parse_vec2(std::string_view option, std::string_view text) {
   const auto parts = split(text, ',');

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/temporary_file.h"
+#include "io/particle_writers.h"
 
 namespace meniscus::io {
 namespace {
@@ -102,23 +103,12 @@ void write_counting(TemporaryStream& stream, T first, std::size_t count) {
   }
 }
 
-void check_lengths(const std::string& path, const Particles& particles) {
-  const std::size_t count = particles.size();
-  bool good = particles.y.size() == count && particles.z.size() == count;
-  for (const Attribute& attribute : particles.attributes)
-    good = good && attribute.components > 0 &&
-           attribute.values.size() == count * static_cast<std::size_t>(attribute.components);
-  if (!good)
-    throw Error(ErrorCode::invalid_argument,
-                {"the particles' arrays have different lengths", {}, {}, path, {}, {}, {}});
-}
-
 }  // namespace
 
 void write_vtp(const std::string& path, const Particles& particles) {
   check_lengths(path, particles);
   const std::uint64_t count = particles.size();
-  const bool wide = particles.origin != glm::dvec3{0.0};
+  const bool wide = has_origin(particles);
   const bool many = count >= std::uint64_t{1} << 31;
 
   std::string text = fmt::format(

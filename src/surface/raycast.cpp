@@ -101,7 +101,11 @@ class RaycastSurface final : public Surface {
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "thickness");
     if (field_.has_sizes()) return sized_thickness(field_, view, points);
-    return splatted_thickness(field_.grid, field_.options.spacing, view, points);
+    const float spacing = field_.options.spacing;
+    std::call_once(counted_made_, [&] {
+      tbb::this_task_arena::isolate([&] { counted_.emplace(field_.grid, spacing, field_.grid.counted()); });
+    });
+    return splatted_thickness(*counted_, spacing, view, points);
   }
 
   float spacing() const override { return field_.least_spacing; }
@@ -199,6 +203,8 @@ class RaycastSurface final : public Surface {
   SphereSet hidden_cells_;
   std::vector<SphereGroups> groups_;     ///< by level, and those of hidden cells
   std::vector<GroupedSpheres> spheres_;  ///< the same: the field's own arrays, and hidden_cells_
+  mutable std::once_flag counted_made_;
+  mutable std::optional<CountedCells> counted_;  ///< made when thickness is asked for for the first time
   mutable std::once_flag cells_made_;
   mutable std::optional<MarchCells> cells_;  ///< made when rays are followed for the first time
 };

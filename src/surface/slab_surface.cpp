@@ -184,7 +184,8 @@ class SlabSurface final : public Surface {
       }
     }
     const RaycastField field = make_field(part, options_, {}, Keep::band);
-    const Image<float> more = summed_water(field.grid, options_.spacing, camera, share);
+    const Image<float> more =
+        summed_water(CountedCells(field.grid, options_.spacing, share.all), options_.spacing, camera, share);
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += more[i];
   }
 

@@ -76,8 +76,10 @@ class SurfelSurface final : public Surface {
       return Image<float>(picture ? view.width : static_cast<int>(points.size()), picture ? view.height : 1, 0.0f);
     }
     StageTimer timer(times, "thickness");
+    const BandGrid& grid = origin_->field.grid;
+    const CountedCells counted(grid, options_.spacing, grid.counted());
     const auto of_face = [&](const View& face, std::span<const vec2> in_face) {
-      return splatted_thickness(origin_->field.grid, options_.spacing, face, in_face);
+      return splatted_thickness(counted, options_.spacing, face, in_face);
     };
     if (view.projection != Projection::cube) return of_face(view, points);
     if (points.empty()) {

@@ -55,8 +55,14 @@ Image<float> enlarged(const Image<float>& coarse, int stride, int width, int hei
 }  // namespace
 
 Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view, std::span<const vec2> points) {
+  return splatted_thickness(CountedCells(grid, spacing, grid.counted()), spacing, view, points);
+}
+
+Image<float> splatted_thickness(const CountedCells& counted, float spacing, const View& view,
+                                std::span<const vec2> points) {
+  const BandGrid& grid = counted.grid();
   return thickness_by_sums({grid.bounds(), grid.counted(), spacing}, view, points, [&](const SplatCamera& camera) {
-    return summed_water(grid, spacing, camera, {grid.counted()});
+    return summed_water(counted, spacing, camera, {grid.counted()});
   });
 }
 

@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "particles/band_grid.h"
 #include "surface/splat_camera.h"
+#include "surface/thickness_cells.h"
 
 namespace meniscus {
 
@@ -17,6 +17,9 @@ namespace meniscus {
 /// all particles before the eye is kept.
 /// @param spacing  m
 Image<float> splatted_thickness(const BandGrid& grid, float spacing, const View& view, std::span<const vec2> points);
+/// The same of water that is seen more than once: its cells are counted once.
+Image<float> splatted_thickness(const CountedCells& counted, float spacing, const View& view,
+                                std::span<const vec2> points);
 
 /// Water whose thickness is summed.
 struct WaterBody {

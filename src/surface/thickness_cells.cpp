@@ -65,7 +65,12 @@ Layers known_layers(const BandGrid& grid, int block, const BandBits& counted) {
   Layers layers;
   const bool by_kinds = grid.has_hidden();
   if (by_kinds && grid.all_open(block)) return layers;
-  const BandBits some = by_kinds ? bits_of_kinds(grid.kinds(block), false) : counted;
+  BandBits some = counted;
+  if (by_kinds) {  // none of the particles of deep cells are there
+    const BandBits deep = bits_of_kinds(grid.kinds(block), true);
+    some = bits_of_kinds(grid.kinds(block), false);
+    for (std::size_t slice = 0; slice < some.size(); ++slice) some[slice] &= ~deep[slice];
+  }
   const std::uint32_t* counts = grid.counts(block);
   for (int slice = 0; slice < BandGrid::kSide; ++slice)
     for (std::uint64_t word = some[static_cast<std::size_t>(slice)]; word != 0; word &= word - 1) {

@@ -21,6 +21,7 @@ class CountedCells {
   ///                 the surface that are known one by one are counted as well
   CountedCells(const BandGrid& grid, float spacing, std::size_t all);
 
+  const BandGrid& grid() const { return grid_; }
   const BandBits& cells(int block) const { return blocks_[static_cast<std::size_t>(block)].cells; }
   /// Share of the water's volume in the cells.
   float density(int block) const { return blocks_[static_cast<std::size_t>(block)].density; }

@@ -3,7 +3,6 @@
 #include <glm/geometric.hpp>
 
 #include "surface/thickness_canvas.h"
-#include "surface/thickness_cells.h"
 
 namespace meniscus {
 namespace {
@@ -52,14 +51,14 @@ bool sees_sides(const Bounds& box, const SplatCamera& camera) {
 /// Blocks that are added to one canvas after another.
 class Water {
  public:
-  Water(const BandGrid& grid, float spacing, const SplatCamera& camera, const WaterShare& share)
-      : grid_(grid),
+  Water(const CountedCells& counted, float spacing, const SplatCamera& camera, const WaterShare& share)
+      : grid_(counted.grid()),
         spacing_(spacing),
         camera_(camera),
         volume_(spacing * spacing * spacing),
         share_(share),
-        steep_(sees_sides(grid.bounds(), camera)),
-        counted_(grid, spacing, share.all) {}
+        steep_(sees_sides(grid_.bounds(), camera)),
+        counted_(counted) {}
 
   SplatBox box(int block) const {
     const float half = 0.5f * grid_.cell_size() * BandGrid::kSide;
@@ -202,7 +201,7 @@ class Water {
   float volume_;  ///< m^3, of a particle
   WaterShare share_;
   bool steep_;  ///< whether boxes are seen along their sides
-  CountedCells counted_;
+  const CountedCells& counted_;
 };
 
 /// Ends of pieces of the blocks that cost about the same, whatever the number of threads.
@@ -221,10 +220,12 @@ std::vector<int> pieces_of(const BandGrid& grid) {
 
 }  // namespace
 
-Image<float> summed_water(const BandGrid& grid, float spacing, const SplatCamera& camera, const WaterShare& share) {
+Image<float> summed_water(const CountedCells& counted, float spacing, const SplatCamera& camera,
+                          const WaterShare& share) {
+  const BandGrid& grid = counted.grid();
   Image<float> sums(camera.width, camera.height, 0.0f);
   if (grid.blocks() == 0) return sums;
-  const Water water(grid, spacing, camera, share);
+  const Water water(counted, spacing, camera, share);
   const std::vector<int> ends = pieces_of(grid);
   std::vector<ThicknessCanvas> canvases(ends.size());
   parallel_for(ends.size(), 1, [&](std::size_t piece, std::size_t) {

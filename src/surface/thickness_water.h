@@ -1,8 +1,8 @@
 /// The particles of a grid as points, spheres and boxes of water.
 #pragma once
 
-#include "particles/band_grid.h"
 #include "surface/splat_camera.h"
+#include "surface/thickness_cells.h"
 
 namespace meniscus {
 
@@ -22,6 +22,7 @@ struct WaterShare {
 
 /// Water along the rays of the camera's samples, m; points are not spread yet.
 /// @param spacing  m
-Image<float> summed_water(const BandGrid& grid, float spacing, const SplatCamera& camera, const WaterShare& share);
+Image<float> summed_water(const CountedCells& counted, float spacing, const SplatCamera& camera,
+                          const WaterShare& share);
 
 }  // namespace meniscus

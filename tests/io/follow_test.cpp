@@ -86,7 +86,7 @@ TEST(FrameFollower, EndsWhenItIsStopped) {
 
 TEST(FrameFollower, WaitsForADamagedFileToChange) {
   const Scratch scratch;
-  const FramePath frame{scratch.write("f_1.bgeo", small_bgeo().substr(0, 100)), 1};
+  const FramePath frame{scratch.write("f_1.bgeo", small_bgeo().substr(0, 100)), 1, {}, {}};
   FrameFollower follower({frame.path}, {}, quick());
   EXPECT_FALSE(follower.wait_for_change(frame)) << "it stays as it is";
   std::thread writer([&] {

@@ -39,12 +39,13 @@ TEST(Extremes, InTheNumbersOfBgeoAreRefusedWhereTheyMatter) {
     EXPECT_EQ(read_with(9, extreme), extreme == 0 ? Outcome::read : Outcome::refused) << "points " << extreme;
     for (const std::size_t unused : {13u, 17u, 21u, 29u, 33u, 37u})
       EXPECT_EQ(read_with(unused, extreme), Outcome::read) << "number at " << unused;
-    if (extreme != 0) EXPECT_EQ(read_with(25, extreme), Outcome::refused) << "attributes " << extreme;
+    if (extreme == 0) continue;
+    EXPECT_EQ(read_with(25, extreme), Outcome::refused) << "attributes " << extreme;
     // The type of the first attribute, and how many texts the second one has.
-    if (extreme != 0) EXPECT_EQ(read_with(47, extreme), Outcome::refused) << "type " << extreme;
-    if (extreme != 0) EXPECT_EQ(read_with(67, extreme), Outcome::refused) << "texts " << extreme;
+    EXPECT_EQ(read_with(47, extreme), Outcome::refused) << "type " << extreme;
+    EXPECT_EQ(read_with(67, extreme), Outcome::refused) << "texts " << extreme;
   }
-  for (const std::uint16_t extreme : {0x7fff, 0x8000, 0xffff}) {
+  for (const std::uint16_t extreme : {std::uint16_t{0x7fff}, std::uint16_t{0x8000}, std::uint16_t{0xffff}}) {
     for (const std::size_t length : {41u, 45u, 55u, 61u}) {
       const std::string bytes = with(good, length, extreme, std::endian::big);
       EXPECT_EQ(outcome_within(scratch.write("f.bgeo", bytes)), Outcome::refused) << length << " " << extreme;
