@@ -170,17 +170,21 @@ void CountedCells::move_planes(float spacing) {
     for (std::size_t b = begin; b < end; ++b) {
       if (!(in_cell[b] > 0.0f)) continue;
       const glm::ivec3 at = grid_.corner(static_cast<int>(b)) / BandGrid::kSide;
+      int around[3][3][3];  // blocks by x, y, z
+      for (int x = 0; x < 3; ++x)
+        for (int y = 0; y < 3; ++y)
+          for (int z = 0; z < 3; ++z) around[x][y][z] = grid_.find(at.x + x - 1, at.y + y - 1, at.z + z - 1);
       for (int axis = 0; axis < 3; ++axis) {
         // Layers -1 to 8 of the block, of it and the eight around it in that layer.
         Layer row[BandGrid::kSide + 2];
         for (int j = -1; j <= 1; ++j)
           for (int i = -1; i <= 1; ++i)
             for (int along = -1; along <= 1; ++along) {
-              glm::ivec3 place = at;
+              glm::ivec3 place{1};
               place[axis] += along;
               place[(axis + 1) % 3] += i;
               place[(axis + 2) % 3] += j;
-              const int other = grid_.find(place.x, place.y, place.z);
+              const int other = around[place.x][place.y][place.z];
               if (other < 0) continue;
               const Layer(&from)[BandGrid::kSide] = layers[static_cast<std::size_t>(other)].at[axis];
               if (along < 0) row[0] += from[BandGrid::kSide - 1];
