@@ -17,7 +17,7 @@ namespace meniscus {
 /// while that is small, else by hashing, and blocks that hold a single particle share their tables of cells.
 ///
 /// A cell is well filled when it holds at least `well_filled` particles, in three patches of it (band_cells.h) if that
-/// many; hidden when it and the 26 around it are; deep when all cells within `kept_layers` + 1 of it are. Particles of
+/// many, or in two where few cells of its block are like that; hidden when it and the 26 around it are; deep when all cells within `kept_layers` + 1 of it are. Particles of
 /// deep cells are counted and left out: nothing that is asked near a surface lies within reach of them.
 ///
 /// Sorted order: by block (z slowest, then y, then x), within a block by cell (the same), within a cell as given, so

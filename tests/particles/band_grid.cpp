@@ -29,14 +29,32 @@ class Oracle {
     const vec3 at = (p - low_) * (1.0f / options_.cell_size);
     return {static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(at.z)};
   }
+  /// Whether the cell holds enough particles, in so many patches if there are that many.
+  bool in_patches(Cell c, std::size_t patches) const {
+    const auto found = cells_.find(c);
+    return found != cells_.end() && found->second.size() >= options_.well_filled &&
+           patches_.at(c).size() >= std::min<std::size_t>(options_.well_filled, patches);
+  }
+  /// Whether two patches are enough in the block of the cell: for at most one of five cells.
+  bool two_are_enough(Cell c) const {
+    const Cell block{c[0] / 8, c[1] / 8, c[2] / 8};
+    const auto known = two_.find(block);
+    if (known != two_.end()) return known->second;
+    int two = 0, three = 0;
+    for (int i = 0; i < 512; ++i) {
+      const Cell other{8 * block[0] + i % 8, 8 * block[1] + i / 8 % 8, 8 * block[2] + i / 64};
+      three += in_patches(other, 3);
+      two += in_patches(other, 2);
+    }
+    return two_[block] = 4 * (two - three) <= three;
+  }
   bool all_filled(Cell c, int reach) const {
     if (options_.well_filled == 0) return false;
     for (int z = -reach; z <= reach; ++z)
       for (int y = -reach; y <= reach; ++y)
         for (int x = -reach; x <= reach; ++x) {
-          const auto found = cells_.find({c[0] + x, c[1] + y, c[2] + z});
-          if (found == cells_.end() || found->second.size() < options_.well_filled) return false;
-          if (patches_.at(found->first).size() < std::min(options_.well_filled, 3u)) return false;
+          const Cell other{c[0] + x, c[1] + y, c[2] + z};
+          if (!in_patches(other, 2) || !in_patches(other, two_are_enough(other) ? 2 : 3)) return false;
         }
     return true;
   }
@@ -63,6 +81,7 @@ class Oracle {
   std::map<Cell, std::set<int>> patches_;
   std::map<Cell, std::vector<std::uint32_t>> cells_;
   std::map<Cell, bool> deep_;
+  mutable std::map<Cell, bool> two_;  ///< by block
 };
 
 struct Counted {
@@ -180,6 +199,15 @@ TEST(BandGrid, TakesALatticeForWaterWhereverItsPlanesAreRoundedTo) {
           for (int x = 0; x < 12; ++x) add(lattice, {rounded(x, 0), rounded(y, 1), rounded(z, 2)});
       EXPECT_TRUE(BandGrid(lattice, {2.0f, 3, 0}).has_deep()) << shift << " " << sides;
     }
+}
+
+TEST(BandGrid, LeavesOutTroubledWaterWhereHereAndThereACellHoldsItsParticlesInTwoPatches) {
+  Particles particles = cubic(48, 44, 48, 0.25);
+  for (float& y : particles.y) y *= 1.1f;
+  const BandGrid grid(particles, {2.0f, 3, 2});
+  // All but six layers of cells along each axis.
+  EXPECT_LT(static_cast<double>(grid.size()), static_cast<double>(particles.size()) - 0.95 * 8 * 18 * 18 * 18 / 1.1);
+  expect_as_defined(particles, {2.0f, 3, 1});
 }
 
 TEST(BandGrid, KeepsAllWhereNoCellIsWellFilled) {
