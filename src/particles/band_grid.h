@@ -16,8 +16,8 @@ namespace meniscus {
 /// thousand times as wide as the tank takes no more memory than its particles justify: they are found by a dense table
 /// while that is small, else by hashing, and blocks that hold a single particle share their tables of cells.
 ///
-/// A cell is well filled when it holds at least `well_filled` particles, in three patches of it (band_cells.h) if that
-/// many, or in two where few cells of its block are like that; hidden when it and the 26 around it are; deep when all cells within `kept_layers` + 1 of it are. Particles of
+/// A cell is well filled when it holds at least `well_filled` particles, in two patches of it (band_cells.h) if that
+/// many; hidden when it and the 26 around it are; deep when all cells within `kept_layers` + 1 of it are. Particles of
 /// deep cells are counted and left out: nothing that is asked near a surface lies within reach of them.
 ///
 /// Sorted order: by block (z slowest, then y, then x), within a block by cell (the same), within a cell as given, so
@@ -46,6 +46,10 @@ class BandGrid {
   std::size_t counted() const { return counted_; }  ///< all particles
   float cell_size() const { return cell_size_; }
   const Bounds& bounds() const { return bounds_; }  ///< of all particles
+  /// Where cells are counted from, m, for particles in these bounds: a quarter of a cell below them. The planes of a
+  /// lattice, half a cell apart, then lie amidst the cells, and rounding does not choose which cells they fill.
+  static vec3 origin_of(const Bounds& bounds, float cell_size) { return bounds.low - 0.25f * cell_size; }
+  const vec3& origin() const { return origin_; }
 
   /// Positions of the kept particles in sorted order, m; size() + kPadding values.
   const float* x() const { return x_.get(); }
@@ -61,9 +65,9 @@ class BandGrid {
   /// Blocks that hold particles, in sorted order.
   int blocks() const { return static_cast<int>(corner_.size()); }
   /// Cell coordinates of the block's first cell: multiples of kSide; cell c of an axis covers
-  /// bounds().low + [c, c + 1) cell_size.
+  /// origin() + [c, c + 1) cell_size.
   glm::ivec3 corner(int block) const { return corner_[static_cast<std::size_t>(block)]; }
-  vec3 low(int block) const { return bounds_.low + cell_size_ * vec3(corner(block)); }
+  vec3 low(int block) const { return origin_ + cell_size_ * vec3(corner(block)); }
   /// By cell of a block, (z * 8 + y) * 8 + x: kind, number of all particles, and the kept ones.
   const Kind* kinds(int block) const {
     return &kind_[std::size_t{kind_page_[static_cast<std::size_t>(block)]} * kCells];
@@ -129,6 +133,7 @@ class BandGrid {
   int blocks_x_ = 0, blocks_y_ = 0, blocks_z_ = 0;
   bool deep_ = false;
   Bounds bounds_;
+  vec3 origin_{0.0f};
   std::shared_ptr<float[]> x_, y_, z_;      ///< not changed after they have been made: copies share them
   std::shared_ptr<std::uint32_t[]> index_;  ///< none without keep_index
   std::vector<glm::ivec3> corner_;
@@ -153,7 +158,7 @@ void BandGrid::for_each_run(vec3 low, vec3 high, Visit visit) const {
     if (first) return at > last ? blocks * kSide : static_cast<int>(std::max(at, 0.0f));
     return at < 0.0f ? -1 : static_cast<int>(std::min(at, last));
   };
-  const vec3 o = bounds_.low;
+  const vec3 o = origin_;
   const int x0 = cell(low.x, o.x, blocks_x_, true), x1 = cell(high.x, o.x, blocks_x_, false);
   const int y0 = cell(low.y, o.y, blocks_y_, true), y1 = cell(high.y, o.y, blocks_y_, false);
   const int z0 = cell(low.z, o.z, blocks_z_, true), z1 = cell(high.z, o.z, blocks_z_, false);

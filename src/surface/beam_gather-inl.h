@@ -31,7 +31,7 @@ HWY_INLINE void for_each_run_along(const BandGrid& grid, const Capsule& capsule,
   const int lanes = static_cast<int>(hn::Lanes(d));
   // All in cells.
   const float per_cell = 1.0f / grid.cell_size(), radius = capsule.radius * per_cell + 1e-3f;
-  const vec3 from = (capsule.from - grid.bounds().low) * per_cell, to = (capsule.to - grid.bounds().low) * per_cell;
+  const vec3 from = (capsule.from - grid.origin()) * per_cell, to = (capsule.to - grid.origin()) * per_cell;
   const glm::ivec3 blocks{grid.blocks_x(), grid.blocks_y(), grid.blocks_z()};
   const vec3 least = (glm::min(from, to) - radius) * (1.0f / kSide),
              most = (glm::max(from, to) + radius) * (1.0f / kSide);

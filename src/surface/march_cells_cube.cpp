@@ -78,8 +78,8 @@ class Cube {
   void mark_closed(const BandGrid& grid, vec3 low, vec3 high, MarchRows& rows) const {
     if (!grid.has_hidden()) return;
     const float width = grid.cell_size();
-    const auto first = glm::max(glm::ivec3(glm::floor((low - grid.bounds().low) / width)) - 1, 0);
-    const auto last = glm::min(glm::ivec3(glm::floor((high - grid.bounds().low) / width)) + 1,
+    const auto first = glm::max(glm::ivec3(glm::floor((low - grid.origin()) / width)) - 1, 0);
+    const auto last = glm::min(glm::ivec3(glm::floor((high - grid.origin()) / width)) + 1,
                                BandGrid::kSide * glm::ivec3(grid.blocks_x(), grid.blocks_y(), grid.blocks_z()) - 1);
     for (int bz = first.z / 8; bz <= last.z / 8; ++bz)
       for (int by = first.y / 8; by <= last.y / 8; ++by)

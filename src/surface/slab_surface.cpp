@@ -103,8 +103,9 @@ class SlabSurface final : public Surface {
                                Image<float> sums(camera.width, camera.height, 0.0f);
                                const std::vector<Slab> slabs = slabs_for(view);
                                const float cell = smoothing_length_of(options_);
+                               const vec3 origin = BandGrid::origin_of(bounds_, cell);
                                const auto cell_at = [&](const Slab& slab, float border) {
-                                 return static_cast<int>(std::lround((border - bounds_.low[slab.axis]) / cell));
+                                 return static_cast<int>(std::lround((border - origin[slab.axis]) / cell));
                                };
                                for (std::size_t k = 0; k < slabs.size(); ++k) {
                                  const Slab& slab = slabs[k];
@@ -166,7 +167,7 @@ class SlabSurface final : public Surface {
   void add_water(const WaterShare& share, const SplatCamera& camera, Image<float>& sums) const {
     // Which cells lie amidst water is told by those around them.
     const float cell = smoothing_length_of(options_), margin = margin_of(options_) + cell;
-    const float origin = bounds_.low[share.axis];
+    const float origin = BandGrid::origin_of(bounds_, cell)[share.axis];
     const float begin = origin + cell * static_cast<float>(share.first),
                 end = origin + cell * static_cast<float>(share.end);
     const bool first = share.first <= 0, last = end >= bounds_.high[share.axis] - 0.01f * cell;

@@ -143,29 +143,32 @@ HWY_INLINE Vec chord_of(const SplatCamera& camera, vec3 offset, vec3 half, Vec u
   return hn::Mul(chord, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, hn::Set(d, 1.0f)))));
 }
 
-void box(const SplatCamera& camera, const SplatBox& box, float weight, bool steep, ThicknessCanvas& canvas) {
+void box(const SplatCamera& camera, const SplatBox& box, float weight, float edge, ThicknessCanvas& canvas) {
   const Tag d;
+  const bool steep = edge > 0.0f;
+  const vec3 offset = box.middle - camera.eye;
+  const float depth = camera.perspective ? std::max(glm::dot(offset, camera.forward), 0.0f) : 1.0f;
+  const float width = depth > edge || !camera.perspective ? std::max(camera.du, edge / depth) : camera.du;
   SplatBox around = box;
-  if (steep) {
-    const vec3 offset = box.middle - camera.eye;
-    const float far = glm::dot(offset, camera.forward) + glm::dot(box.half, glm::abs(camera.forward));
-    around.half += 0.5f * camera.du * (camera.perspective ? std::max(far, 0.0f) : 1.0f);
-  }
+  if (steep)
+    around.half += 0.5f * width * (depth + (camera.perspective ? glm::dot(box.half, glm::abs(camera.forward)) : 0.0f));
   const SampleRect rect = samples_of(camera, around);
   if (rect.empty()) return;
-  const vec3 offset = box.middle - camera.eye;
   for_each_vector(camera, rect, canvas, [&](float* values, Vec u, Vec v, auto valid) {
     if (!steep) {
       add_to(values, hn::Mul(chord_of(camera, offset, box.half, u, v), hn::Set(d, weight)), valid);
       return;
     }
-    // Where sides are seen edge on, a sample is the mean over its area: of four places, no two in a row or column.
+    // Where sides are seen edge on, a sample is the mean of eight places, no two in a row or column.
+    constexpr int kPlaces = 8;
+    const auto off = [&](int place) {
+      return width * ((static_cast<float>(place) + 0.5f) / static_cast<float>(kPlaces) - 0.5f);
+    };
     Vec sum = hn::Zero(d);
-    for (const vec2 place :
-         {vec2{-0.375f, 0.125f}, vec2{-0.125f, -0.375f}, vec2{0.125f, 0.375f}, vec2{0.375f, -0.125f}})
-      sum = hn::Add(sum, chord_of(camera, offset, box.half, hn::Add(u, hn::Set(d, place.x * camera.du)),
-                                  hn::Add(v, hn::Set(d, place.y * camera.dv))));
-    add_to(values, hn::Mul(sum, hn::Set(d, 0.25f * weight)), valid);
+    for (int k = 0; k < kPlaces; ++k)
+      sum = hn::Add(sum, chord_of(camera, offset, box.half, hn::Add(u, hn::Set(d, off(k))),
+                                  hn::Add(v, hn::Set(d, off(3 * k % kPlaces)))));
+    add_to(values, hn::Mul(sum, hn::Set(d, weight / static_cast<float>(kPlaces))), valid);
   });
 }
 
@@ -178,8 +181,8 @@ void AddPoints(const SplatCamera& camera, const float* x, const float* y, const 
 void AddSphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
   sphere(camera, centre, radius, weight, canvas);
 }
-void AddBox(const SplatCamera& camera, const SplatBox& one, float weight, bool steep, ThicknessCanvas& canvas) {
-  box(camera, one, weight, steep, canvas);
+void AddBox(const SplatCamera& camera, const SplatBox& one, float weight, float edge, ThicknessCanvas& canvas) {
+  box(camera, one, weight, edge, canvas);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -207,8 +210,8 @@ void add_points(const SplatCamera& camera, const float* x, const float* y, const
 void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
   HWY_DYNAMIC_DISPATCH(AddSphere)(camera, centre, radius, weight, canvas);
 }
-void add_box(const SplatCamera& camera, const SplatBox& box, float weight, bool steep, ThicknessCanvas& canvas) {
-  HWY_DYNAMIC_DISPATCH(AddBox)(camera, box, weight, steep, canvas);
+void add_box(const SplatCamera& camera, const SplatBox& box, float weight, float edge, ThicknessCanvas& canvas) {
+  HWY_DYNAMIC_DISPATCH(AddBox)(camera, box, weight, edge, canvas);
 }
 
 }  // namespace meniscus

@@ -31,7 +31,9 @@ void add_points(const SplatCamera& camera, const float* x, const float* y, const
 void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas);
 
 /// The same for a box along the axes of the world.
-/// @param steep  rays run nearly along some of its sides: samples are means over their areas
-void add_box(const SplatCamera& camera, const SplatBox& box, float weight, bool steep, ThicknessCanvas& canvas);
+/// @param edge  m, 0 or more: its sides fall off over so much, where rays run nearly along some of them; at least over
+/// a
+///              sample's width then
+void add_box(const SplatCamera& camera, const SplatBox& box, float weight, float edge, ThicknessCanvas& canvas);
 
 }  // namespace meniscus

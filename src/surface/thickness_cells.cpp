@@ -196,6 +196,25 @@ void CountedCells::move_planes(float spacing) {
       }
     }
   });
+  join_planes(in_cell);
+}
+
+/// Planes between blocks that both have cells: rays would meet a gap between two of them, or water twice.
+void CountedCells::join_planes(const std::vector<float>& in_cell) {
+  parallel_for(blocks_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      if (!(in_cell[b] > 0.0f)) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 at = grid_.corner(static_cast<int>(b)) / BandGrid::kSide;
+        ++at[axis];
+        const int next = grid_.find(at.x, at.y, at.z);
+        if (next < 0 || !(in_cell[static_cast<std::size_t>(next)] > 0.0f)) continue;
+        float &here = blocks_[b].moved[axis][BandGrid::kSide],
+              &there = blocks_[static_cast<std::size_t>(next)].moved[axis][0];
+        here = there = 0.5f * (here + there);
+      }
+    }
+  });
 }
 
 void CountedCells::count() {

@@ -42,6 +42,7 @@ class CountedCells {
   void choose(float spacing, std::size_t all);
   void count();
   void move_planes(float spacing);
+  void join_planes(const std::vector<float>& in_cell);
   /// By block: particles in a cell's volume of the counted cells of it and those around it; 0 where it has none.
   std::vector<float> mean_counts() const;
 

@@ -9,6 +9,8 @@ namespace {
 
 /// A particle or eighth of a cell that is at most so many samples wide is a point.
 constexpr float kWidestPoint = 3.0f;
+/// Spacings that the water of spheres falls off over where it ends: boxes beside them have to begin so.
+constexpr float kEdge = 1.5f;
 constexpr std::size_t kMostPieces = 16;
 constexpr double kPieceCost = 20000, kBlockCost = 100;  ///< in particles
 
@@ -57,7 +59,7 @@ class Water {
         camera_(camera),
         volume_(spacing * spacing * spacing),
         share_(share),
-        steep_(sees_sides(grid_.bounds(), camera)),
+        edge_(sees_sides(grid_.bounds(), camera) ? kEdge * spacing : 0.0f),
         counted_(counted) {}
 
   SplatBox box(int block) const {
@@ -114,10 +116,20 @@ class Water {
   }
 
  private:
+  /// CountedCells::corner(), but for planes that bound the share: the cells beyond are told by other particles, and
+  /// water would be missed or met twice between them.
+  vec3 corner(int block, glm::ivec3 cell) const {
+    vec3 at = counted_.corner(block, cell);
+    const int axis = share_.axis, place = grid_.corner(block)[axis] + cell[axis];
+    if (place == share_.first || place == share_.end)
+      at[axis] = grid_.low(block)[axis] + grid_.cell_size() * static_cast<float>(cell[axis]);
+    return at;
+  }
+
   /// A cube of `side` counted cells.
   void add_cells_as_box(int block, glm::ivec3 first, int side, ThicknessCanvas& canvas) const {
-    const vec3 low = counted_.corner(block, first), high = counted_.corner(block, first + side);
-    add_box(camera_, {0.5f * (low + high), 0.5f * (high - low)}, counted_.density(block), steep_, canvas);
+    const vec3 low = corner(block, first), high = corner(block, first + side);
+    add_box(camera_, {0.5f * (low + high), 0.5f * (high - low)}, counted_.density(block), edge_, canvas);
   }
 
   /// The cells that are set: cubes of 4 and of 2 cells a side as boxes, the others one by one.
@@ -156,7 +168,7 @@ class Water {
       for (std::uint64_t word = cells[static_cast<std::size_t>(slice)]; word != 0; word &= word - 1) {
         const int in_slice = __builtin_ctzll(word);
         const glm::ivec3 cell{in_slice % 8, in_slice / 8, slice};
-        const vec3 low = counted_.corner(block, cell), size = counted_.corner(block, cell + 1) - low;
+        const vec3 low = corner(block, cell), size = corner(block, cell + 1) - low;
         for (int k = 0; k < 8; ++k) {
           x[number] = low.x + size.x * ((k & 1) != 0 ? 0.75f : 0.25f);
           y[number] = low.y + size.y * ((k & 2) != 0 ? 0.75f : 0.25f);
@@ -200,7 +212,7 @@ class Water {
   const SplatCamera& camera_;
   float volume_;  ///< m^3, of a particle
   WaterShare share_;
-  bool steep_;  ///< whether boxes are seen along their sides
+  float edge_;  ///< m, that the boxes' sides fall off over; 0 where they are not seen along
   const CountedCells& counted_;
 };
 

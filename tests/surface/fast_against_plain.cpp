@@ -112,7 +112,7 @@ TEST(CullInterior, SeesWhatLiesBehindGapsThatCountsOfParticlesDoNotShow) {
   // Three particles in one point of each cell of the grid would fill it well by their number, yet parallel rays run
   // between such clumps. Amidst them clumps stand in those rays' way.
   Particles particles;
-  add(particles, vec3{0});  // so that the others stand in the middles of cells of two spacings
+  add(particles, 0.5f * kSpacing * vec3{1, 1, 1});  // so that the others stand in the middles of cells of two spacings
   constexpr int kCells = 9;
   for (int z = 0; z < kCells; ++z)
     for (int y = 0; y < kCells; ++y)

@@ -70,7 +70,9 @@ TEST(SlabSurface, SumsTheThicknessOfTheWhole) {
         double squares = 0;
         for (std::size_t i = 0; i < sums.size(); ++i) squares += std::pow(double{sums[i]} - double{expected[i]}, 2);
         const double rms = std::sqrt(squares / static_cast<double>(sums.size()));
-        EXPECT_LT(rms, slabs == 1 ? 1e-6 : 4e-3 * sum_of(expected) / static_cast<double>(sums.size()))
+        // Along the cells' sides rays meet or miss the boxes of whole columns beside a cut.
+        const double most = slabs == 1 ? 0 : direction.x == 0 ? 8e-3 : 4e-3;
+        EXPECT_LE(rms, most * sum_of(expected) / static_cast<double>(sums.size()))
             << slabs << " slabs, x " << direction.x;
       }
     }

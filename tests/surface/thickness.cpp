@@ -24,7 +24,7 @@ double chord(const Ray& ray, const Bounds& box) {
 }
 
 TEST(Thickness, OfAFilledBoxIsItsChordWithinFivePercent) {
-  const Particles particles = lattice_box(20, 18, 16);
+  const Particles particles = lattice_box(28, 26, 24);  // deep cells amidst spheres
   const Bounds box = particles.bounds().grown(0.5f * kSpacing);
   for (const Projection projection : kProjections)
     // Along the lattice's axes and diagonals, too. Smoothing rounds the edges between the faces: a tenth there.
