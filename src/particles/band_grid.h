@@ -37,6 +37,12 @@ class BandGrid {
     bool keep_index = true;         ///< whether given_index() will be asked for
   };
 
+  /// Particles that a well filled cell holds where `inside` are in one inside the water.
+  static std::uint32_t well_filled(float inside) {
+    constexpr float kShare = 0.4f;
+    return static_cast<std::uint32_t>(std::max(kShare * inside, 1.0f));
+  }
+
   BandGrid() = default;
   /// @throws Error  invalid_argument: cell_size <= 0; limit_exceeded: cells beyond 2^21 blocks along an axis, 2^32
   ///                particles

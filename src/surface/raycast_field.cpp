@@ -7,9 +7,6 @@
 namespace meniscus {
 namespace {
 
-/// Of the particles that a cell inside the water holds, the share that counts as well filled.
-constexpr float kWellFilled = 0.4f;
-
 void require(bool holds, std::string_view name, double value, std::string_view range) {
   if (!holds)
     throw Error(
@@ -104,7 +101,7 @@ BandGrid::Options grid_options(const RaycastOptions& options, Keep keep, float l
   wanted.cell_size = cell;
   if (keep == Keep::all || (keep == Keep::band && !options.cull_interior)) return wanted;
   const float inside = cell * cell * cell / (least_spacing * least_spacing * least_spacing);
-  wanted.well_filled = std::max(static_cast<std::uint32_t>(kWellFilled * inside), 1u);
+  wanted.well_filled = BandGrid::well_filled(inside);
   // Marches reach a smoothing length, normals their radius into the water.
   const float reach = std::max(options.smoothing_length, options.normal_radius);
   wanted.kept_layers = keep == Keep::band ? static_cast<int>(std::ceil(reach / cell)) : 1 << 20;

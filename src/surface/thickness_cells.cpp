@@ -6,8 +6,6 @@
 namespace meniscus {
 namespace {
 
-/// Of the particles that a cell inside the water holds, the share that counts as well filled.
-constexpr float kWellFilled = 0.4f;
 /// Of water of so many particles all that are kept are looked at: only cells whose particles were left out are not.
 constexpr std::size_t kAllParticles = std::size_t{1} << 21;
 /// Cells beside a plane that tell as much of where its water ends as knowing nothing of it does.
@@ -133,7 +131,7 @@ CountedCells::CountedCells(const BandGrid& grid, float spacing, std::size_t all)
 /// Cells amidst well filled ones: their particles need not be known one by one.
 void CountedCells::choose(float spacing, std::size_t all) {
   const float cell = grid_.cell_size() / spacing;
-  const auto well_filled = static_cast<std::uint32_t>(std::max(1.0f, kWellFilled * cell * cell * cell));
+  const std::uint32_t well_filled = BandGrid::well_filled(cell * cell * cell);
   const bool known = grid_.has_hidden(), few = all <= kAllParticles;
   if (few && !grid_.has_deep()) return;
   std::vector<BandBits> bits(known ? 0 : blocks_.size());
