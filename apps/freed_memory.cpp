@@ -5,14 +5,12 @@
 namespace meniscus::apps {
 namespace {
 
-// Larger arrays, those of many particles, come from the system each time, in large pages; glibc allows no more.
-constexpr int kLargest = 32 << 20;    ///< bytes
 constexpr int kKeepUpTo = 512 << 20;  ///< bytes at the end of the heap
 
 }  // namespace
 
 void keep_freed_memory() {
-  mallopt(M_MMAP_THRESHOLD, kLargest);
+  mallopt(M_MMAP_MAX, 0);  // arrays of the system go back to it, and its threshold is 32 MB at most
   mallopt(M_TRIM_THRESHOLD, kKeepUpTo);
 }
 

@@ -42,7 +42,10 @@ struct HeaderCursor {
   bool short_of_bytes = false;
 
   bool has(std::uint64_t size) {
-    if (size <= source.bytes.size() - at) return true;
+    if (size <= source.bytes.size() - at) {
+      source.need(at, size);
+      return true;
+    }
     short_of_bytes = true;
     return false;
   }
@@ -128,7 +131,7 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
   source.require(header.first_point, header.points, header.stride, "points");
   const auto count = static_cast<std::size_t>(header.points);
   const auto stride = static_cast<std::size_t>(header.stride);
-  const char* first = source.bytes.data() + header.first_point;
+  const Stored first = source.stored(static_cast<std::size_t>(header.first_point));
   Particles particles;
   particles.format = "bgeo";
   std::size_t word = 4;  // the fourth is the homogeneous w, 1

@@ -1,34 +1,13 @@
 #include "io/bytes.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cerrno>
 #include <cstring>
 
+#include "io/file_bytes.h"
+
 namespace meniscus::io {
-namespace {
-
-constexpr std::size_t kPiece = std::size_t{1} << 22;  ///< bytes of a file that one thread reads at once
-
-[[noreturn]] void system_failure(const std::string& path, std::string problem) {
-  const int number = errno;
-  const ErrorCode code = number == ENOENT || number == ENOTDIR ? ErrorCode::not_found : ErrorCode::io_failed;
-  throw Error(code, {std::move(problem), {}, std::strerror(number), path, {}, {}, {}});
-}
-
-struct Descriptor {
-  int value;
-  ~Descriptor() {
-    if (value >= 0) ::close(value);
-  }
-};
-
-}  // namespace
 
 void Bytes::resize(std::size_t size) {
   auto larger = std::make_unique_for_overwrite<char[]>(size);
@@ -53,43 +32,14 @@ void Source::require(std::uint64_t offset, std::uint64_t count, std::uint64_t it
             fmt::format("{} bytes", left));
 }
 
-bool Source::starts_with(std::string_view magic) const {
-  return std::string_view(bytes.data(), bytes.size()).starts_with(magic);
+void Source::need(std::uint64_t offset, std::uint64_t size) const {
+  if (file == nullptr || offset >= bytes.size()) return;
+  const auto first = static_cast<std::size_t>(offset);
+  file->fetch(bytes.data() + first, static_cast<std::size_t>(std::min<std::uint64_t>(size, bytes.size() - first)));
 }
 
-Bytes read_file(const std::string& path, std::size_t most) {
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  if (file.value < 0) system_failure(path, "cannot open the file");
-  struct stat status {};
-  if (::fstat(file.value, &status) != 0) system_failure(path, "cannot look at the file");
-  if (!S_ISREG(status.st_mode)) {
-    throw Error(
-        ErrorCode::io_failed,
-        {"is not a regular file", {}, S_ISDIR(status.st_mode) ? "a directory" : "a device or pipe", path, {}, {}, {}});
-  }
-
-  // A file may shrink while it is read: what could be read up to the first gap is what it is. (Were it mapped instead
-  // of read, the process would be killed.)
-  Bytes bytes(std::min(most, static_cast<std::size_t>(status.st_size)));
-  std::atomic<std::size_t> whole{bytes.size()};
-  std::atomic<int> failure{0};
-  parallel_for(bytes.size(), kPiece, [&](std::size_t begin, std::size_t end) {
-    while (begin < end) {
-      const ssize_t count = ::pread(file.value, bytes.data() + begin, end - begin, static_cast<off_t>(begin));
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) failure = errno;
-      if (count <= 0) break;
-      begin += static_cast<std::size_t>(count);
-    }
-    for (std::size_t least = whole; begin < end && begin < least && !whole.compare_exchange_weak(least, begin);) {
-    }
-  });
-  if (failure != 0) {
-    errno = failure;
-    system_failure(path, "cannot read the file");
-  }
-  if (whole < bytes.size()) bytes.resize(whole);
-  return bytes;
+bool Source::starts_with(std::string_view magic) const {
+  return std::string_view(bytes.data(), bytes.size()).starts_with(magic);
 }
 
 std::uint64_t believable_size(std::uint64_t compressed_size) {

@@ -25,10 +25,32 @@ class Bytes {
   std::size_t size_ = 0;
 };
 
+class FileBytes;
+
+/// Where bytes stand: in memory, or in a file of which they are read when they are used (PieceBuffer).
+struct Stored {
+  const char* at = nullptr;         ///< in memory, or the place in FileBytes::span() that they would have
+  const FileBytes* file = nullptr;  ///< null: in memory
+
+  Stored() = default;
+  Stored(const char* memory, const FileBytes* of = nullptr) : at(memory), file(of) {}  // NOLINT: implicit by intention
+  Stored operator+(std::size_t offset) const { return {at + offset, file}; }
+};
+
 /// What a reader reads: the bytes (decompressed) and the path for error messages.
 struct Source {
   const std::string& path;
-  std::span<const char> bytes;
+  std::span<const char> bytes;  ///< all of them; where there is a file, those that need() was called for
+  FileBytes* file = nullptr;    ///< that the bytes are fetched from; null: all are in memory
+
+  /// Fetches `size` bytes from `offset` on, or up to the end. Not by several threads at once.
+  /// @throws Error  as FileBytes::fetch()
+  void need(std::uint64_t offset, std::uint64_t size) const;
+  void need_all() const { need(0, bytes.size()); }
+  /// The place of a byte, fetched or not.
+  Stored stored(std::size_t offset) const { return {bytes.data() + offset, file}; }
+  /// The source from a byte on.
+  Source part(std::size_t offset, std::size_t size) const { return {path, bytes.subspan(offset, size), file}; }
 
   /// Throws malformed_file about this file.
   [[noreturn]] void malformed(std::string problem, std::uint64_t byte_offset, std::string expected = {},

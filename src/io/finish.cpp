@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
 
 #include "io/attributes.h"
@@ -72,22 +71,11 @@ void keep(Kept& kept, Particles& particles) {
 
 /// Unmarks particles whose positions are not finite; how many there are.
 std::size_t unmark_non_finite(const Particles& particles, std::vector<std::uint8_t>& marks) {
+  // Which of them is asked only where set_positions() has met one.
+  if (particles.dropped_non_finite == 0) return 0;
   const auto finite = [&](std::size_t i) {
     return std::isfinite(particles.x[i]) && std::isfinite(particles.y[i]) && std::isfinite(particles.z[i]);
   };
-  // Which of them is asked only where one is: without branches, this takes no longer than reading the memory.
-  std::atomic<bool> any{false};
-  parallel_for(particles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    constexpr std::uint32_t kExponent = 0x7f800000u;
-    std::uint32_t wrong = 0;
-    for (const std::vector<float>* values : {&particles.x, &particles.y, &particles.z}) {
-      const float* value = values->data();
-      for (std::size_t i = begin; i < end; ++i)
-        wrong |= static_cast<std::uint32_t>((std::bit_cast<std::uint32_t>(value[i]) & kExponent) == kExponent);
-    }
-    if (wrong != 0) any = true;
-  });
-  if (!any) return 0;
   std::atomic<std::size_t> count{0};
   parallel_for(particles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t piece = 0;
@@ -134,8 +122,9 @@ void finish(const ReadOptions& options, Particles& particles) {
   unify_names(particles.attributes);
   scale_lengths(options.scale, particles);
   Kept kept{marked(options, particles), {}};
-  if (const std::size_t lost = unmark_non_finite(particles, kept.marks); lost > 0) {
-    particles.dropped_non_finite = lost;
+  const std::size_t lost = unmark_non_finite(particles, kept.marks);
+  particles.dropped_non_finite = lost;
+  if (lost > 0) {
     particles.notes.push_back(
         fmt::format("{} of {} particles were left out: their positions are not finite", lost, particles.size()));
   }

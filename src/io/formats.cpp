@@ -39,17 +39,25 @@ bool is_zip(const Source& start) { return start.starts_with("PK\x03\x04") || sta
 
 void look_at_hdf5_file(const Source& start, FrameHead& head) { look_at_hdf5(start.path, head); }
 
+using Fetching = Format::Fetching;
+
 const std::array kFormats{
-    Format{"bgeo", "classic BGEO", {".bgeo"}, is_bgeo, read_bgeo, look_at_bgeo},
-    Format{"vtk", "legacy VTK", {".vtk"}, is_vtk, read_vtk, look_at_vtk},
-    Format{"vtkxml", "VTK XML", {".vtu", ".vtp", ".pvtu", ".pvtp"}, is_vtk_xml, read_vtk_xml, look_at_vtk_xml},
+    Format{"bgeo", "classic BGEO", {".bgeo"}, is_bgeo, read_bgeo, look_at_bgeo, Fetching::reader},
+    Format{"vtk", "legacy VTK", {".vtk"}, is_vtk, read_vtk, look_at_vtk, Fetching::reader},
+    Format{"vtkxml",
+           "VTK XML",
+           {".vtu", ".vtp", ".pvtu", ".pvtp"},
+           is_vtk_xml,
+           read_vtk_xml,
+           look_at_vtk_xml,
+           Fetching::reader},
     Format{"series", "a list of frames", {".pvd", ".series"}, is_json_series, refuse_series},
-    Format{"ply", "PLY", {".ply"}, is_ply, read_ply, look_at_ply},
-    Format{"hdf5", "HDF5", {".hdf5", ".h5"}, is_hdf5, read_hdf5, look_at_hdf5_file, true},
-    Format{"npy", "NPY", {".npy"}, is_npy, read_npy, look_at_npy},
-    Format{"npz", "NPZ", {".npz"}, is_zip, read_npz, look_at_npz},
+    Format{"ply", "PLY", {".ply"}, is_ply, read_ply, look_at_ply, Fetching::reader},
+    Format{"hdf5", "HDF5", {".hdf5", ".h5"}, is_hdf5, read_hdf5, look_at_hdf5_file, Fetching::library},
+    Format{"npy", "NPY", {".npy"}, is_npy, read_npy, look_at_npy, Fetching::reader},
+    Format{"npz", "NPZ", {".npz"}, is_zip, read_npz, look_at_npz, Fetching::reader},
     // Numbers without a header: where the options say so, or in an .xyz that is no text.
-    Format{"raw", "raw numbers", {}, is_raw_xyz, read_raw, look_at_raw},
+    Format{"raw", "raw numbers", {}, is_raw_xyz, read_raw, look_at_raw, Fetching::reader},
     // Numbers in text have no mark: after all that have one.
     Format{"xyz", "text of x y z", {".xyz", ".txt", ".csv", ".dat"}, is_text, read_xyz, look_at_xyz},
 };

@@ -19,8 +19,9 @@ struct Format {
   Particles (*read)(const Source& source, const ReadOptions& options) = nullptr;
   /// What the first bytes tell of the frame; head.file_bytes and plain_bytes are set. Null: only the size is known.
   void (*look)(const Source& start, FrameHead& head) = nullptr;
-  /// A library reads the file by its path: read() gets its first bytes only.
-  bool reads_file = false;
+  /// Who fetches the bytes of a file (Source::need()).
+  enum class Fetching { all_before, reader, library };  ///< library: it reads the file by its path
+  Fetching fetching = Fetching::all_before;
 };
 
 /// In the order in which they are tried.

@@ -19,10 +19,12 @@ std::mutex& hdf5_mutex() {
 }
 
 /// The values of a group's positions and of what else it knows of each particle, an array after the other.
-Particles read_group(Hdf5Particles& chosen, const ReadOptions& options) {
+/// @param bytes  of the same file; null: there are none
+Particles read_group(Hdf5Particles& chosen, const FileBytes* bytes, const ReadOptions& options) {
   Particles particles;
   std::vector<Bytes> positions;
-  for (const std::size_t place : chosen.found.places) positions.push_back(chosen.group.load(chosen.arrays[place]));
+  for (const std::size_t place : chosen.found.places)
+    positions.push_back(chosen.group.load(chosen.arrays[place], bytes));
   set_positions(chosen.arrays, chosen.found, options, particles);
   positions.clear();
   if (chosen.found.guessed)
@@ -38,7 +40,7 @@ Particles read_group(Hdf5Particles& chosen, const ReadOptions& options) {
     if (array.rows() == std::uint64_t{0} || chosen.found.count == 0) continue;
     const std::string why = why_no_attribute(array, chosen.found.count);
     if (why.empty()) {
-      const Bytes values = chosen.group.load(array);
+      const Bytes values = chosen.group.load(array, bytes);
       particles.attributes.push_back(attribute_of(array));
     } else if (left_out.size() < 200) {
       left_out += fmt::format("{}'{}' {}", left_out.empty() ? "" : ", ", array.name.substr(0, 60), why);
@@ -131,7 +133,7 @@ Particles read_hdf5(const Source& start, const ReadOptions& options) {
     for (std::size_t i = 1; i < candidates.size(); ++i)
       if (candidates[i].is_boundary) chosen.push_back(i);
   Particles particles = join_pieces(chosen.size(), options, [&](std::size_t piece, const ReadOptions& reading) {
-    return read_group(candidates[chosen[piece]], reading);
+    return read_group(candidates[chosen[piece]], start.file, reading);
   });
   particles.format = "hdf5";
   particles.time = time_of(file);

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "io/bytes.h"
+#include "io/file_bytes.h"
 
 namespace meniscus::io {
 namespace {
@@ -65,6 +65,17 @@ std::optional<double> number_in(hid_t attribute) {
   double value = 0;
   if (H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0) return std::nullopt;
   return value;
+}
+
+/// Where `size` bytes of an array's values stand in a file, as they are and one after the other; null: they do not.
+Stored place_in(hid_t dataset, std::uint64_t size, const FileBytes* file) {
+  const Hdf5Handle plan(H5Dget_create_plist(dataset), H5Pclose);
+  if (file == nullptr || size == 0 || !plan || H5Pget_layout(plan.get()) != H5D_CONTIGUOUS) return {};
+  const haddr_t offset = H5Dget_offset(dataset);
+  if (offset == HADDR_UNDEF || H5Dget_storage_size(dataset) != size) return {};
+  const std::span<const char> bytes = file->span();
+  if (offset > bytes.size() || size > bytes.size() - offset) return {};
+  return {bytes.data() + offset, file};
 }
 
 }  // namespace
@@ -163,7 +174,7 @@ void Hdf5Group::check_size(hid_t dataset, const NumberArray& array) const {
                                           {}});
 }
 
-Bytes Hdf5Group::load(NumberArray& array) const {
+Bytes Hdf5Group::load(NumberArray& array, const FileBytes* file) const {
   const Hdf5Handle access = within_the_file(H5P_DATASET_ACCESS);
   const Hdf5Handle dataset(H5Dopen2(handle_.get(), array.name.c_str(), access.get()), H5Dclose);
   if (!dataset || !array.type)
@@ -173,14 +184,18 @@ Bytes Hdf5Group::load(NumberArray& array) const {
   const Hdf5Handle stored(H5Dget_type(dataset.get()), H5Tclose);
   const std::uint64_t count = product_of(array.shape);
   const std::size_t value = size_of(*array.type);
+  array.step = value;
+  array.stride = array.columns() * value;
+  if (plain_type(stored.get())) {
+    array.first = place_in(dataset.get(), count * value, file);
+    if (array.first.at != nullptr) return {};
+  }
   Bytes bytes(static_cast<std::size_t>(count) * value);
   const hid_t type = plain_type(stored.get()) ? stored.get() : H5T_NATIVE_DOUBLE;
   if (count > 0 && H5Dread(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
     throw Error(ErrorCode::malformed_file,
                 {fmt::format("the array '{}' is damaged", array.name), {}, {}, path_, {}, {}, "write the frame again"});
   array.first = bytes.data();
-  array.step = value;
-  array.stride = array.columns() * value;
   return bytes;
 }
 

@@ -61,9 +61,11 @@ class Hdf5Group {
   /// What an array in it is, without its values; none if there is no array of that name. Links to other files and
   /// arrays whose values stand in other files are told of, but have no type: they are never followed.
   std::optional<NumberArray> describe(const std::string& name) const;
-  /// Reads the values of an array that describe() gave and lets it point to them.
+  /// Lets an array that describe() gave point to its values: to their place in `file`, where they stand there as they
+  /// are, one after the other, else to what is returned, into which the library reads them.
+  /// @param file  the same file, to be read without the library; null: there is none
   /// @throws Error malformed_file: damaged, or longer than the stored bytes can justify
-  Bytes load(NumberArray& array) const;
+  Bytes load(NumberArray& array, const FileBytes* file) const;
   /// A number that tells groups apart, the same for every name that a group has.
   std::uint64_t address() const;
   /// A number stored as an attribute of this group or as an array of one value in it.

@@ -42,6 +42,7 @@ Particles join_pieces(std::size_t count, const ReadOptions& options,
     Particles& piece = pieces[i];
     if (!piece.empty() && piece.origin != joined.origin) piece = read(i, together);
     total += piece.size();
+    joined.dropped_non_finite += piece.dropped_non_finite;
     joined.format = piece.format;
     if (!joined.time) joined.time = piece.time;
     add_notes(piece.notes, joined.notes);

@@ -36,7 +36,7 @@ void lay_out(NumberArray& array, const NpyHeader& header, const NpyField& field)
   }
 }
 
-/// Replaces numbers of 16 bits by floats in memory of their own, row by row.
+/// Replaces numbers of 16 bits, which are in memory, by floats in memory of their own, row by row.
 void widen(NumberArray& array, std::deque<Bytes>& memory) {
   const auto rows = static_cast<std::size_t>(array.shape.empty() ? 1 : array.shape[0]);
   const std::size_t columns = array.columns();
@@ -44,7 +44,7 @@ void widen(NumberArray& array, std::deque<Bytes>& memory) {
   parallel_for(rows, 1 << 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t c = 0; c < columns; ++c) {
-        const double bits = read_value(Scalar::uint16, array.order, array.first + i * array.stride + c * array.step);
+        const double bits = read_value(Scalar::uint16, array.order, array.first.at + i * array.stride + c * array.step);
         const float value = float_of_half(static_cast<unsigned>(bits));
         std::memcpy(floats.data() + (i * columns + c) * sizeof value, &value, sizeof value);
       }
@@ -59,7 +59,7 @@ void widen(NumberArray& array, std::deque<Bytes>& memory) {
 /// The value of an array that has only one, none for text and for others.
 std::optional<double> single_value(const NumberArray& array) {
   if (!array.type || array.shape.size() > 1 || (array.shape.size() == 1 && array.shape[0] != 1)) return std::nullopt;
-  const double value = read_value(*array.type, array.order, array.first);
+  const double value = read_value(*array.type, array.order, array.first.at);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
@@ -67,7 +67,7 @@ std::optional<double> single_value(const NumberArray& array) {
 bool take_frame_value(const NumberArray& array, Particles& particles) {
   if (array.shape.size() > 1) return false;
   if (array.name == "up" && array.shape.empty() && array.type_name.ends_with("U1")) {
-    const auto letter = static_cast<std::uint32_t>(read_value(Scalar::uint32, array.order, array.first));
+    const auto letter = static_cast<std::uint32_t>(read_value(Scalar::uint32, array.order, array.first.at));
     for (const Axis axis : {Axis::x, Axis::y, Axis::z})
       if (static_cast<std::uint32_t>(meniscus::name_of(axis)[0]) == letter) particles.up = axis;
     return true;
@@ -87,6 +87,7 @@ bool take_frame_value(const NumberArray& array, Particles& particles) {
 }  // namespace
 
 void add_npy(const Source& source, const std::string& name, NpyArrays& to) {
+  source.need(0, kMostNpyHeader);
   if (!source.starts_with("\x93NUMPY")) source.malformed("is no array of NumPy", 0, "\\x93NUMPY");
   const std::optional<NpyHeader> header = npy_header_of(source);
   if (!header) source.malformed("the file ends inside its NumPy header", source.bytes.size());
@@ -95,6 +96,10 @@ void add_npy(const Source& source, const std::string& name, NpyArrays& to) {
     return;
   }
   source.require(header->first, header->items, header->item_size, "values");
+  const bool has_half =
+      std::any_of(header->fields.begin(), header->fields.end(), [](const NpyField& field) { return field.half; });
+  // Single values and what is widened are looked at where they are.
+  if (header->items <= 1 || has_half) source.need(header->first, header->items * header->item_size);
   for (const NpyField& field : header->fields) {
     NumberArray& array = to.arrays.emplace_back();
     array.name = field.name.empty() ? name : field.name;
@@ -103,7 +108,7 @@ void add_npy(const Source& source, const std::string& name, NpyArrays& to) {
     array.type = field.type;
     array.type_name = field.type ? std::string(name_of(*field.type)) : field.type_name;
     array.order = field.order;
-    array.first = source.bytes.data() + header->first + field.offset;
+    array.first = source.stored(header->first + field.offset);
     // An array without values may claim any length of the other side.
     if (header->items == 0 && !array.shape.empty()) array.shape[0] = 0;
     lay_out(array, *header, field);

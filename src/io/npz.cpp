@@ -21,6 +21,15 @@ void add_member(const Source& source, const std::string& name, NpyArrays& to) {
   }
 }
 
+Particles particles_in(const Source& source, std::span<const ZipMember> members,
+                       std::span<const UnpackedMember> unpacked, const ReadOptions& options) {
+  NpyArrays arrays;
+  for (std::size_t i = 0; i < members.size(); ++i)
+    add_member(Source{source.path, unpacked[i].plain, unpacked[i].file},
+               members[i].name.substr(0, members[i].name.size() - 4), arrays);
+  return particles_of(arrays, options, source.path);
+}
+
 }  // namespace
 
 Particles read_npz(const Source& source, const ReadOptions& options) {
@@ -30,10 +39,15 @@ Particles read_npz(const Source& source, const ReadOptions& options) {
     source.unsupported("is a zip archive without arrays of NumPy", "save arrays with numpy.savez()");
   std::erase_if(members, [&](const ZipMember& member) { return !is_array(member); });
   const std::vector<UnpackedMember> unpacked = unpack(source, members);
-  NpyArrays arrays;
-  for (std::size_t i = 0; i < members.size(); ++i)
-    add_member(Source{source.path, unpacked[i].plain}, members[i].name.substr(0, members[i].name.size() - 4), arrays);
-  Particles particles = particles_of(arrays, options, source.path);
+  // What is wrong in a damaged member is that it is damaged, whatever its bytes seem to say.
+  Particles particles;
+  try {
+    particles = particles_in(source, members, unpacked, options);
+  } catch (const Error&) {
+    check_stored(source, members);
+    throw;
+  }
+  check_stored(source, members);
   particles.format = "npz";
   return particles;
 }

@@ -6,13 +6,15 @@
 #include <map>
 
 #include "io/attributes.h"
+#include "io/file_bytes.h"
 #include "io/text.h"
 #include "io/unwritten.h"
 
 namespace meniscus::io {
 namespace {
 
-constexpr std::size_t kMostColumns = 256;  ///< of an attribute
+constexpr std::size_t kMostColumns = 256;   ///< of an attribute
+constexpr std::size_t kColumnRows = 16384;  ///< rows of one column after another that one thread converts
 constexpr std::array<std::string_view, 10> kNames{"positions", "position", "pos",   "coordinates", "coords",
                                                   "coord",     "points",   "point", "xyz",         "p"};
 
@@ -160,13 +162,15 @@ void set_positions(std::span<const NumberArray> arrays, const PositionArrays& fo
   }
   // Columns of different types: as doubles.
   std::vector<double> values(3 * rows);
-  parallel_for(rows, 1 << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const NumberArray& array = arrays[found.places[c]];
-      for (std::size_t i = begin; i < end; ++i)
-        values[3 * i + c] = read_value(*array.type, array.order, array.first + i * array.stride);
-    }
-  });
+  for (std::size_t c = 0; c < 3; ++c) {
+    const NumberArray& array = arrays[found.places[c]];
+    const Scalar type = *array.type;
+    for_each_piece(array.first, array.stride, size_of(type), rows,
+                   [&](std::size_t begin, std::size_t end, const char* bytes) {
+                     for (std::size_t i = begin; i < end; ++i)
+                       values[3 * i + c] = read_value(type, array.order, bytes + (i - begin) * array.stride);
+                   });
+  }
   set_positions(values, options, particles);
 }
 
@@ -181,11 +185,14 @@ Attribute attribute_of(const NumberArray& array) {
     return attribute;
   }
   // Column after column, as Fortran stores them.
-  parallel_for(rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::array<float, kRowsAtOnce> one;
+  PieceBuffers buffers;
+  parallel_for(rows, kColumnRows, [&](std::size_t begin, std::size_t end) {
+    PieceBuffers::Lease buffer(buffers);
+    std::array<float, kColumnRows> one;
     for (std::size_t c = 0; c < columns; ++c) {
-      const char* first = array.first + c * array.step + begin * array.stride;
-      read_columns(*array.type, array.order, first, array.stride, end - begin, 1, one.data());
+      const char* bytes = buffer->bytes(array.first + c * array.step + begin * array.stride,
+                                        (end - begin - 1) * array.stride + size_of(*array.type));
+      convert_columns(*array.type, array.order, bytes, array.stride, end - begin, 1, one.data());
       for (std::size_t i = begin; i < end; ++i) target[i * columns + c] = one[i - begin];
     }
   });

@@ -5,14 +5,14 @@
 
 namespace meniscus::io {
 
-/// An array of a file. Row i of column c stands at first + i * stride + c * step, once it is in memory.
+/// An array of a file. Row i of column c stands at first + i * stride + c * step, once that is known.
 struct NumberArray {
   std::string name;
   std::vector<std::uint64_t> shape;  ///< empty: a single value
   std::optional<Scalar> type;        ///< none: not numbers, or not of a kind that is read
   std::endian order = std::endian::native;
   std::string type_name;  ///< for messages: "float32"
-  const char* first = nullptr;
+  Stored first;
   std::size_t stride = 0;
   std::size_t step = 0;
 
@@ -53,11 +53,11 @@ std::string list_of(std::span<const NumberArray> arrays);
 /// "numpy's" name of a type: "float32".
 std::string_view name_of(Scalar type);
 
-/// The positions; the arrays are in memory.
+/// The positions; where the arrays stand is known.
 void set_positions(std::span<const NumberArray> arrays, const PositionArrays& found, const ReadOptions& options,
                    Particles& particles);
 
-/// An array of rows() and columns() as an attribute; it is in memory.
+/// An array of rows() and columns() as an attribute; where it stands is known.
 Attribute attribute_of(const NumberArray& array);
 
 /// Every array that is not among the positions as an attribute; one note on those that cannot be.

@@ -45,6 +45,7 @@ class PlyReader {
  private:
   void skip(const PlyElement& element) {
     if (element.properties.empty()) return;
+    need_lists(element);
     source_.require(position(), element.count, header_.ascii ? 1 : element.row_size(), element.name + " rows");
     if (!header_.ascii && !element.has_list()) {
       at_ += element.count * element.row_size();
@@ -53,6 +54,11 @@ class PlyReader {
     for (std::uint64_t row = 0; row < element.count; ++row) {
       for (const PlyProperty& property : element.properties) skip_value(property, element.name);
     }
+  }
+
+  /// What is read value by value has to be in memory.
+  void need_lists(const PlyElement& element) const {
+    if (header_.ascii || element.has_list()) source_.need_all();
   }
 
   std::size_t position() const { return header_.ascii ? text_.at() : at_; }
@@ -80,6 +86,7 @@ class PlyReader {
 
   void read_vertices(const PlyElement& vertex) {
     const std::array<std::size_t, 3> axes = axes_of(vertex);
+    need_lists(vertex);
     source_.require(position(), vertex.count, header_.ascii ? 2 * vertex.properties.size() - 1 : vertex.row_size(),
                     "vertices");
     if (header_.ascii || vertex.has_list()) {
@@ -166,7 +173,7 @@ class PlyReader {
   void read_blocks(const PlyElement& vertex, const std::array<std::size_t, 3>& axes) {
     const auto count = static_cast<std::size_t>(vertex.count);
     const std::size_t stride = vertex.row_size();
-    const char* first = source_.bytes.data() + at_;
+    const Stored first = source_.stored(at_);
     std::vector<std::size_t> offsets;
     std::vector<RowPart> parts;
     std::size_t offset = 0, inside = 0;  // properties to come that belong to a vector which has begun

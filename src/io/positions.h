@@ -8,16 +8,19 @@
 
 namespace meniscus::io {
 
-/// One column of numbers in memory; need not be aligned.
+/// One column of numbers; need not be aligned.
 struct Column {
-  const char* first = nullptr;
+  Stored first;
   std::size_t stride = 0;  ///< bytes from row to row
 };
 
 /// Fills x, y, z and origin of particles from three columns of one type.
 /// Floats without a scale are taken over bit by bit. Of doubles the origin is options.origin, else zero, or a round
 /// number amidst the positions where they are more than kFar times as far away as they are spread.
+/// particles.dropped_non_finite becomes the number of coordinates that are NaN or infinite: finish() leaves their
+/// particles out and counts these.
 /// @param beside  other values of the same rows, which are converted in the same pass
+/// @throws Error  as FileBytes::fetch()
 void set_positions(Scalar type, std::endian order, const std::array<Column, 3>& columns, std::size_t rows,
                    const ReadOptions& options, Particles& particles, const RowParts& beside = {});
 

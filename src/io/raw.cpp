@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "io/file_bytes.h"
 #include "io/positions.h"
 #include "io/text.h"
 
@@ -14,33 +15,38 @@ namespace {
 
 constexpr std::uint64_t kMostValues = 4096;  ///< a particle
 constexpr std::size_t kSampled = 4096;       ///< particles that are looked at to see whether the form is right
+constexpr std::size_t kRun = 64;             ///< of these that stand one after the other
 
 /// Of all coordinates of some particles, how many are plausible: finite, no more than a million kilometres, and not
 /// below what simulations know. Bytes in the wrong order or of another type seldom are.
-double plausible_share(const RawForm& form, std::span<const char> bytes) {
-  const std::size_t rows = bytes.size() / form.row_bytes();
-  const std::size_t step = std::max<std::size_t>(rows / kSampled, 1);
+double plausible_share(const RawForm& form, const Source& source) {
+  const std::size_t rows = source.bytes.size() / form.row_bytes();
+  const std::size_t step = kRun * std::max<std::size_t>(rows / kSampled, 1);
+  PieceBuffer buffer;
   std::size_t looked_at = 0, plausible = 0;
-  for (std::size_t row = 0; row < rows; row += step) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double value = std::abs(
-          read_value(form.type, form.order, bytes.data() + row * form.row_bytes() + axis * size_of(form.type)));
-      ++looked_at;
-      if (value == 0 || (value > 1e-30 && value < 1e9)) ++plausible;
-    }
+  for (std::size_t run = 0; run < rows; run += step) {
+    const std::size_t run_rows = std::min(kRun, rows - run);
+    const char* bytes = buffer.bytes(source.stored(run * form.row_bytes()), run_rows * form.row_bytes());
+    for (std::size_t row = 0; row < run_rows; ++row)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double value =
+            std::abs(read_value(form.type, form.order, bytes + row * form.row_bytes() + axis * size_of(form.type)));
+        ++looked_at;
+        if (value == 0 || (value > 1e-30 && value < 1e9)) ++plausible;
+      }
   }
   return looked_at == 0 ? 1 : static_cast<double>(plausible) / static_cast<double>(looked_at);
 }
 
 /// A form in which the bytes are more plausible, for advice; empty: none. The other byte order comes first.
-std::string better_form(const RawForm& form, std::span<const char> bytes) {
+std::string better_form(const RawForm& form, const Source& source) {
   const bool wide = form.type == Scalar::float64;
   const std::string_view own = wide ? "f64" : "f32", other = wide ? "f32" : "f64";
   const std::string_view swapped = form.order == std::endian::big ? "" : "be";
   for (const auto& [type, order] : {std::pair{own, swapped}, {other, std::string_view()}, {other, "be"}}) {
     const std::string text = fmt::format("{}{}x{}", type, order, form.values);
     const RawForm tried = parse_raw_form(text);
-    if (bytes.size() % tried.row_bytes() == 0 && plausible_share(tried, bytes) > 0.9) return text;
+    if (source.bytes.size() % tried.row_bytes() == 0 && plausible_share(tried, source) > 0.9) return text;
   }
   return {};
 }
@@ -55,8 +61,8 @@ void check(const Source& source, const RawForm& form) {
          fmt::format("{} particles and {} bytes", source.bytes.size() / form.row_bytes(), rest), source.path,
          source.bytes.size() - rest, std::nullopt,
          "say what a particle has: --raw f32x3, f64x3, f32x4 ...; if that is right, write the frame again"});
-  if (plausible_share(form, source.bytes) >= 0.5) return;
-  const std::string better = better_form(form, source.bytes);
+  if (plausible_share(form, source) >= 0.5) return;
+  const std::string better = better_form(form, source);
   throw Error(ErrorCode::malformed_file,
               {"most of the numbers cannot be positions", "lengths", "numbers that are not finite, huge or tiny",
                source.path, 0, std::nullopt,
@@ -120,7 +126,7 @@ bool is_raw_xyz(const Source& start) {
   const auto binary = std::count_if(start.bytes.begin(), start.bytes.end(),
                                     [](char c) { return is_control(c) || static_cast<unsigned char>(c) >= 0x7f; });
   return static_cast<double>(binary) > 0.1 * static_cast<double>(start.bytes.size()) &&
-         plausible_share(form, start.bytes) > 0.8;
+         plausible_share(form, start) > 0.8;
 }
 
 Particles read_raw(const Source& source, const ReadOptions& options) {
@@ -146,7 +152,7 @@ Particles read_raw(const Source& source, const ReadOptions& options) {
         fmt::format("{} numbers a particle beside x y z were left out: nothing names them", form.values - 3));
   std::array<Column, 3> columns;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    columns[axis] = {source.bytes.data() + position[axis] * size_of(form.type), form.row_bytes()};
+    columns[axis] = {source.stored(position[axis] * size_of(form.type)), form.row_bytes()};
   set_positions(form.type, form.order, columns, source.bytes.size() / form.row_bytes(), options, particles);
   return particles;
 }

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 
+#include "io/file_bytes.h"
 #include "io/formats.h"
 #include "io/raw.h"
 #include "io/readable.h"
@@ -12,35 +14,35 @@ namespace {
 
 using namespace io;
 
-constexpr std::size_t kStart = std::size_t{1} << 12;  ///< bytes that tell a format
+constexpr std::size_t kStart = std::size_t{1} << 16;  ///< bytes that tell a format
 
 Particles read_compressed(const Source& source, const ReadOptions& options) {
+  source.need_all();
   Gunzip stream(source);
   if (!options.raw.empty()) {
     stream.grow_to(believable_size(source.bytes.size()) + 1);
     return read_raw(Source{source.path, stream.bytes()}, options);
   }
   stream.grow_to(kStart);
-  const Source start{source.path, stream.bytes()};
-  const Format& format = format_of(start);
-  if (format.reads_file) source.unsupported(fmt::format("is compressed {}", format.title), "decompress it with gunzip");
+  const Format& format = format_of(Source{source.path, stream.bytes()});
+  if (format.fetching == Format::Fetching::library)
+    source.unsupported(fmt::format("is compressed {}", format.title), "decompress it with gunzip");
   if (format.name == "bgeo") return read_bgeo(source.path, stream, options);
   stream.grow_to(believable_size(source.bytes.size()) + 1);
   return format.read(Source{source.path, stream.bytes()}, options);
 }
 
 Particles read_any(const std::string& path, const ReadOptions& options) {
-  if (options.raw.empty()) {
-    // Libraries read their formats by themselves: look at the first bytes before all are fetched.
-    const Bytes bytes = read_file(path, kStart);
-    const Source start{path, bytes.span()};
-    if (!start.starts_with("\x1f\x8b"))
-      if (const Format& format = format_of(start); format.reads_file) return format.read(start, options);
-  }
-  const Bytes bytes = read_file(path);
-  const Source source{path, bytes.span()};
-  if (source.starts_with("\x1f\x8b")) return read_compressed(source, options);
-  return options.raw.empty() ? format_of(source).read(source, options) : read_raw(source, options);
+  FileBytes bytes(path);
+  const Source source = bytes.source();
+  source.need(0, kStart);
+  const Source start = source.part(0, std::min(kStart, source.bytes.size()));
+  if (start.starts_with("\x1f\x8b")) return read_compressed(source, options);
+  if (!options.raw.empty()) return read_raw(source, options);
+  const Format& format = format_of(start);
+  if (format.fetching == Format::Fetching::library) return format.read(start, options);
+  if (format.fetching == Format::Fetching::all_before) source.need_all();
+  return format.read(source, options);
 }
 
 }  // namespace

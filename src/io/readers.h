@@ -32,6 +32,7 @@ void look_at_npz(const Source& start, FrameHead& head);
 
 /// Gives attributes their common names, joins components that stand in arrays of their own, and leaves out
 /// particles whose positions are NaN or infinite, and those that are not asked for.
+/// @param particles  dropped_non_finite is not zero if one of their coordinates is, as set_positions() leaves it
 void finish(const ReadOptions& options, Particles& particles);
 
 }  // namespace meniscus::io

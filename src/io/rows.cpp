@@ -1,15 +1,19 @@
 #include "io/rows.h"
 
+#include "io/file_bytes.h"
+
 namespace meniscus::io {
 
-void read_rows(const RowParts& rows, std::endian order, std::size_t begin, std::size_t end) {
+void convert_rows(const RowParts& rows, std::endian order, const char* bytes, std::size_t begin, std::size_t end) {
   for (const RowPart& part : rows.parts)
-    read_columns(part.type, order, rows.first + begin * rows.stride + part.offset, rows.stride, end - begin,
-                 part.components, part.target + begin * part.components);
+    convert_columns(part.type, order, bytes + part.offset, rows.stride, end - begin, part.components,
+                    part.target + begin * part.components);
 }
 
 void read_rows(const RowParts& rows, std::endian order, std::size_t count) {
-  parallel_for(count, kRowsAtOnce, [&](std::size_t begin, std::size_t end) { read_rows(rows, order, begin, end); });
+  for_each_piece(
+      rows.first, rows.stride, rows.stride, count,
+      [&](std::size_t begin, std::size_t end, const char* bytes) { convert_rows(rows, order, bytes, begin, end); });
 }
 
 }  // namespace meniscus::io

@@ -7,8 +7,6 @@
 
 namespace meniscus::io {
 
-constexpr std::size_t kRowsAtOnce = 4096;  ///< of a block that one thread converts: its bytes stay in the cache
-
 /// Some values of each row.
 struct RowPart {
   Scalar type = Scalar::float32;
@@ -18,15 +16,15 @@ struct RowPart {
 };
 
 struct RowParts {
-  const char* first = nullptr;  ///< of the first row
-  std::size_t stride = 0;       ///< bytes from row to row
+  Stored first;            ///< of the first row
+  std::size_t stride = 0;  ///< bytes from row to row
   std::span<const RowPart> parts;
 };
 
-/// Converts the parts of the rows from `begin` to before `end`, on this thread.
-void read_rows(const RowParts& rows, std::endian order, std::size_t begin, std::size_t end);
+/// Converts the parts of the rows from `begin` to before `end`, on this thread; `bytes` is the first of row `begin`.
+void convert_rows(const RowParts& rows, std::endian order, const char* bytes, std::size_t begin, std::size_t end);
 
-/// Those of all rows, on all threads and block by block, so that the bytes come from memory once.
+/// Those of all rows, on all threads and piece by piece, so that the bytes come from memory once.
 void read_rows(const RowParts& rows, std::endian order, std::size_t count);
 
 }  // namespace meniscus::io

@@ -3,6 +3,7 @@
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <system_error>
@@ -50,29 +51,41 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
+bool TextCursor::fetch(std::size_t at) {
+  constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // bytes
+  const std::size_t size = source_.bytes.size();
+  if (at >= size) return false;
+  source_.need(at, kAtOnce);
+  ready_ = std::min(size, at + kAtOnce);
+  return true;
+}
+
 void TextCursor::skip_blanks() {
-  while (at_ < source_.bytes.size() && is_blank(source_.bytes[at_])) ++at_;
+  while (has(at_) && is_blank(source_.bytes[at_])) ++at_;
 }
 
 std::string_view TextCursor::word() {
   skip_blanks();
   const std::size_t start = at_;
-  while (at_ < source_.bytes.size() && !is_blank(source_.bytes[at_])) ++at_;
+  while (has(at_) && !is_blank(source_.bytes[at_])) ++at_;
   return {source_.bytes.data() + start, at_ - start};
 }
 
 std::string_view TextCursor::peek() {
   const std::size_t before = at_;
   const std::string_view result = word();
-  at_ = before;
+  at_ = before;  // what was fetched is from there on
   return result;
 }
 
 std::string_view TextCursor::line() {
-  const std::size_t left = source_.bytes.size() - at_;
   const char* first = source_.bytes.data() + at_;
-  const void* end = left > 0 ? std::memchr(first, '\n', left) : nullptr;
-  std::size_t length = end != nullptr ? static_cast<std::size_t>(static_cast<const char*>(end) - first) : left;
+  const void* end = nullptr;
+  std::size_t length = 0;
+  while (end == nullptr && has(at_ + length)) {
+    end = std::memchr(first + length, '\n', ready_ - at_ - length);
+    length = end != nullptr ? static_cast<std::size_t>(static_cast<const char*>(end) - first) : ready_ - at_;
+  }
   at_ += length + (end != nullptr ? 1 : 0);
   if (length > 0 && first[length - 1] == '\r') --length;
   return {first, length};

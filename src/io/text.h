@@ -21,10 +21,14 @@ std::vector<std::string_view> words_of(std::string_view line);
 /// A position in a file's bytes that moves over words and lines.
 class TextCursor {
  public:
-  explicit TextCursor(const Source& source, std::size_t at = 0) : source_(source), at_(at) {}
+  explicit TextCursor(const Source& source, std::size_t at = 0)
+      : source_(source), at_(at), ready_(source.file == nullptr ? source.bytes.size() : 0) {}
 
   std::size_t at() const { return at_; }
-  void seek(std::size_t at) { at_ = at; }
+  void seek(std::size_t at) {
+    at_ = at;
+    if (source_.file != nullptr) ready_ = at;
+  }
   bool at_end() const { return at_ >= source_.bytes.size(); }
   void skip_blanks();
   /// The next word, past blanks and line ends; empty at the end of the file.
@@ -44,9 +48,13 @@ class TextCursor {
   void skip_words(std::uint64_t values, std::string_view what);
 
  private:
+  /// Whether there is a byte at `at`, which is fetched.
+  bool has(std::size_t at) { return at < ready_ || fetch(at); }
+  bool fetch(std::size_t at);
   [[noreturn]] void fail(std::string_view what, std::size_t start, std::string_view found) const;
   Source source_;
   std::size_t at_;
+  std::size_t ready_;  ///< up to here all bytes from at_ on are in memory
 };
 
 }  // namespace meniscus::io

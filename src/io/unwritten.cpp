@@ -1,5 +1,7 @@
 #include "io/unwritten.h"
 
+#include "base/large_pages.h"
+
 namespace meniscus::io {
 
 #if defined(__GLIBCXX__) && !defined(_GLIBCXX_DEBUG) && !defined(_GLIBCXX_SANITIZE_VECTOR)
@@ -18,7 +20,9 @@ struct OpenVector : std::vector<float> {
 
 void resize_unwritten(std::vector<float>& values, std::size_t size) {
   values.clear();
+  const bool is_new = size > values.capacity();
   values.reserve(size);
+  if (is_new) ask_for_large_pages(values.data(), size * sizeof(float));
   OpenVector::end_at(values, size);
 }
 

@@ -3,8 +3,13 @@
 #include <cstring>
 #include <type_traits>
 
+#include "io/file_bytes.h"
+#include "io/words.h"
+
 namespace meniscus::io {
 namespace {
+
+constexpr std::size_t kFloatsAtOnce = std::size_t{1} << 18;  ///< that one thread reads to where they belong
 
 template <std::size_t kSize>
 struct Word;
@@ -43,6 +48,8 @@ template <class T, bool kSwap>
 void convert_run(const char* first, std::size_t count, float* target) {
   if constexpr (std::is_same_v<T, float> && !kSwap) {
     std::memcpy(target, first, count * sizeof(T));
+  } else if constexpr (std::is_same_v<T, float>) {
+    swap_words(first, count, target);
   } else {
     for (std::size_t i = 0; i < count; ++i) target[i] = static_cast<float>(load<T, kSwap>(first + i * sizeof(T)));
   }
@@ -60,15 +67,13 @@ void convert_rows(const char* first, std::size_t stride, std::size_t rows, std::
 }
 
 template <class T, bool kSwap>
-void convert(const char* first, std::size_t stride, std::size_t begin, std::size_t end, std::size_t components,
-             float* target) {
-  first += begin * stride;
-  target += begin * components;
-  const std::size_t rows = end - begin;
+void convert(const char* first, std::size_t stride, std::size_t rows, std::size_t components, float* target) {
   if (stride == components * sizeof(T)) {
     convert_run<T, kSwap>(first, rows * components, target);
   } else if (components == 1) {
     convert_rows<T, kSwap, 1>(first, stride, rows, components, target);
+  } else if (std::is_same_v<T, float> && components == 3 && stride >= 3 * sizeof(T)) {
+    copy_triples(first, stride, kSwap, rows, target);
   } else if (components == 3) {
     convert_rows<T, kSwap, 3>(first, stride, rows, components, target);
   } else {
@@ -110,17 +115,32 @@ std::size_t size_of(Scalar type) {
   return with_type(type, [](auto value) { return sizeof(value); });
 }
 
-void read_columns(Scalar type, std::endian order, const char* first, std::size_t stride, std::size_t rows,
-                  std::size_t components, float* target) {
+void convert_columns(Scalar type, std::endian order, const char* first, std::size_t stride, std::size_t rows,
+                     std::size_t components, float* target) {
   with_type(type, [&](auto value) {
     using T = decltype(value);
-    parallel_for(rows, 1 << 16, [&](std::size_t begin, std::size_t end) {
-      if (order == std::endian::native) {
-        convert<T, false>(first, stride, begin, end, components, target);
-      } else {
-        convert<T, true>(first, stride, begin, end, components, target);
-      }
+    if (order == std::endian::native) {
+      convert<T, false>(first, stride, rows, components, target);
+    } else {
+      convert<T, true>(first, stride, rows, components, target);
+    }
+  });
+}
+
+void read_columns(Scalar type, std::endian order, Stored first, std::size_t stride, std::size_t rows,
+                  std::size_t components, float* target) {
+  const std::size_t row_bytes = components * size_of(type);
+  // What needs no conversion is read to where it belongs.
+  const bool as_it_is = type == Scalar::float32 && order == std::endian::native && stride == row_bytes;
+  if (as_it_is && first.file != nullptr && !first.file->has(first.at, rows * row_bytes)) {
+    parallel_for(rows * components, kFloatsAtOnce, [&](std::size_t begin, std::size_t end) {
+      first.file->copy(first.at + begin * sizeof(float),
+                       {reinterpret_cast<char*>(target + begin), (end - begin) * sizeof(float)});
     });
+    return;
+  }
+  for_each_piece(first, stride, row_bytes, rows, [&](std::size_t begin, std::size_t end, const char* bytes) {
+    convert_columns(type, order, bytes, stride, end - begin, components, target + begin * components);
   });
 }
 

@@ -35,6 +35,7 @@ class VtkReader {
       source_.malformed("the third line does not say how the values are written", start, "ASCII or BINARY");
     }
     text_.line();
+    if (form == "ascii") source_.need_all();
     return {source_, text_, form == "binary"};
   }
 
@@ -160,6 +161,7 @@ class VtkReader {
     }
     if (arrays_.binary()) {
       source_.require(text_.at(), 1, size_of(type.scalar), "field");
+      source_.need(text_.at(), size_of(type.scalar));
       particles_.time = read_value(type.scalar, std::endian::big, source_.bytes.data() + text_.at());
       text_.seek(text_.at() + size_of(type.scalar));
     } else {

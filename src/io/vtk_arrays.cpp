@@ -73,7 +73,7 @@ std::vector<float> VtkArrays::read(VtkType type, std::uint64_t tuples, std::uint
   if (binary_) {
     resize_unwritten(values, count);
     const std::size_t size = size_of(type.scalar);
-    read_columns(type.scalar, std::endian::big, source_.bytes.data() + text_.at(), size, count, 1, values.data());
+    read_columns(type.scalar, std::endian::big, source_.stored(text_.at()), size, count, 1, values.data());
     text_.seek(text_.at() + count * size);
   } else {
     values.resize(count);
@@ -95,7 +95,7 @@ void VtkArrays::read_points(VtkType type, std::uint64_t count, const ReadOptions
   const auto points = static_cast<std::size_t>(count);
   if (binary_) {
     const std::size_t size = size_of(type.scalar);
-    const char* first = source_.bytes.data() + text_.at();
+    const Stored first = source_.stored(text_.at());
     set_positions(type.scalar, std::endian::big,
                   {Column{first, 3 * size}, {first + size, 3 * size}, {first + 2 * size, 3 * size}}, points, options,
                   particles);
@@ -139,6 +139,8 @@ void VtkArrays::skip_texts(VtkType type, std::uint64_t values, std::string_view 
       text_.line();
       continue;
     }
+    constexpr std::uint64_t kLongest = 8;
+    source_.need(text_.at(), kLongest);
     const char* at = source_.bytes.data() + text_.at();
     const auto first = static_cast<unsigned char>(*at);
     const std::size_t bytes = std::size_t{8} >> (first >> 6);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "io/file_bytes.h"
 #include "io/join_pieces.h"
 #include "io/named_files.h"
 #include "io/positions.h"
@@ -18,6 +19,7 @@ namespace meniscus::io {
 namespace {
 
 constexpr const char* kFormat = "vtkxml";
+constexpr std::size_t kStart = std::size_t{1} << 12;  ///< bytes that tell a format
 constexpr std::size_t kMostPieces = 100'000;
 constexpr std::size_t kMostArrays = 1024;  ///< of a piece
 
@@ -32,7 +34,7 @@ void read_points(const VtkXmlFile& file, const XmlElement& piece, std::uint64_t 
     file.source.malformed("the points are not of three components", array->at, "3", fmt::format("{}", components));
   const VtkXmlArray values = arrays.read(*array, count, 3);
   const std::size_t size = size_of(values.type);
-  const char* first = values.bytes.data();
+  const Stored first = values.first;
   set_positions(values.type, values.order,
                 {Column{first, 3 * size}, {first + size, 3 * size}, {first + 2 * size, 3 * size}},
                 static_cast<std::size_t>(count), options, particles);
@@ -55,7 +57,7 @@ void read_attributes(const VtkXmlFile& file, const XmlElement& data, std::uint64
     const VtkXmlArray values = arrays.read(array, count, components);
     attribute.components = static_cast<int>(components);
     resize_unwritten(attribute.values, static_cast<std::size_t>(count * components));
-    read_columns(values.type, values.order, values.bytes.data(), size_of(values.type), attribute.values.size(), 1,
+    read_columns(values.type, values.order, values.first, size_of(values.type), attribute.values.size(), 1,
                  attribute.values.data());
     particles.attributes.push_back(std::move(attribute));
   }
@@ -93,7 +95,8 @@ std::optional<double> read_time(const VtkXmlFile& file, const XmlElement& set, V
     if (xml_count(file.source, array, "NumberOfTuples", 1) != 1) continue;
     if (xml_count(file.source, array, "NumberOfComponents", 1) != 1) continue;
     const VtkXmlArray value = arrays.read(array, 1, 1);
-    return read_value(value.type, value.order, value.bytes.data());
+    PieceBuffer buffer;
+    return read_value(value.type, value.order, buffer.bytes(value.first, size_of(value.type)));
   }
   return std::nullopt;
 }
@@ -129,8 +132,9 @@ Particles read_set(const VtkXmlFile& file, const XmlElement& set, const ReadOpti
 Particles read_named_piece(const VtkXmlFile& file, const XmlElement& piece, std::string_view kind,
                            const ReadOptions& options) {
   const std::string path = path_of_named(file.source, piece.value("Source"), piece.at, options);
-  const Bytes bytes = read_file(path);
-  const Source source{path, bytes.span()};
+  FileBytes bytes(path);
+  const Source source = bytes.source();
+  source.need(0, kStart);
   if (!is_vtk_xml(source)) source.malformed("is named as a piece but is not VTK XML", 0);
   const VtkXmlFile inner = open_vtk_xml(source);
   if (inner.kind != kind)

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
 
 #include "io/base64.h"
+#include "io/inflater.h"
 #include "io/text.h"
 #include "io/text_numbers.h"
 #include "io/vtk_xml_file.h"
@@ -36,13 +36,18 @@ class VtkXmlArrays::Stream {
   Stream(const VtkXmlFile& file, std::string name, std::size_t begin, std::size_t end, bool base64)
       : file_(file), name_(std::move(name)), begin_(begin), end_(end), base64_(base64) {}
 
-  /// The first `count` bytes. What was given before becomes invalid.
-  std::span<const char> first(std::uint64_t count) {
+  /// The first `count` bytes, in memory. What was given before becomes invalid.
+  const char* first(std::uint64_t count) {
+    if (!base64_) file_.source.need(begin_, count);
+    return stored(count).at;
+  }
+  /// Where the first `count` bytes stand; in a file they may have to be fetched.
+  Stored stored(std::uint64_t count) {
     const std::uint64_t there = base64_ ? (end_ - begin_) / 4 * 3 : end_ - begin_;
     if (count <= there) {
-      if (!base64_) return file_.source.bytes.subspan(begin_, static_cast<std::size_t>(count));
+      if (!base64_) return file_.source.stored(begin_);
       if (decoded_.size < count) decoded_ = decode_base64(file_.source, begin_, end_, count);
-      if (decoded_.size >= count) return decoded_.bytes.span().first(static_cast<std::size_t>(count));
+      if (decoded_.size >= count) return decoded_.bytes.data();
     }
     malformed("ends early", fmt::format("{} bytes", count),
               fmt::format("{} bytes", base64_ && count <= there ? decoded_.size : there));
@@ -149,20 +154,20 @@ VtkXmlArray VtkXmlArrays::read_text(const XmlElement& array, Scalar type, std::u
   if (read.count < count || !TextCursor(text, read.end).peek().empty())
     file_.source.malformed(fmt::format("{} has too {} values", what, read.count < count ? "few" : "many"), read.end,
                            fmt::format("{}", values));
-  result.bytes = result.owned.span();
+  result.first = result.owned.data();
   return result;
 }
 
 VtkXmlArray VtkXmlArrays::read_plain(Stream& stream, std::uint64_t bytes) const {
   const std::uint64_t size = size_of(file_.header);
-  const std::uint64_t length = word(stream.first(size).data());
+  const std::uint64_t length = word(stream.first(size));
   // Lengths of 32 bits wrap around in files of some writers.
   const bool wrapped = size == 4 && length == (bytes & 0xffffffffu);
   if (length != bytes && !wrapped)
     stream.malformed("has another length than its count asks for", fmt::format("{} bytes", bytes),
                      fmt::format("{} bytes", length));
   VtkXmlArray result;
-  result.bytes = stream.first(size + bytes).subspan(static_cast<std::size_t>(size));
+  result.first = stream.stored(size + bytes) + static_cast<std::size_t>(size);
   if (!stream.in_file()) result.owned = stream.take();
   return result;
 }
@@ -173,13 +178,13 @@ VtkXmlArray VtkXmlArrays::read_compressed(Stream& stream, std::uint64_t bytes) c
                              "write it with vtkZLibDataCompressor or without compression");
   // The number of blocks, the bytes of a block, those of the last if it is not full, and the compressed bytes of each.
   const std::uint64_t size = size_of(file_.header);
-  const std::uint64_t count = word(stream.first(size).data());
+  const std::uint64_t count = word(stream.first(size));
   VtkXmlArray result;
   if (count == 0 && bytes == 0) return result;
   if (count == 0 || count > (std::uint64_t{1} << 56))
     stream.malformed("has an impossible number of blocks", {}, fmt::format("{}", count));
   const std::uint64_t head = (count + 3) * size;
-  const char* words = stream.first(head).data();
+  const char* words = stream.first(head);
   const std::uint64_t block = word(words + size);
   const std::uint64_t last = word(words + 2 * size);
   const std::uint64_t full = last == 0 ? count : count - 1;
@@ -196,23 +201,24 @@ VtkXmlArray VtkXmlArrays::read_compressed(Stream& stream, std::uint64_t bytes) c
   }
   if (bytes > believable_size(begins.back() - head)) stream.too_much();
 
-  const std::span<const char> packed = stream.first(begins.back());
+  const char* packed = stream.first(begins.back());
   result.owned = Bytes(static_cast<std::size_t>(bytes));
   const std::size_t grain = std::max<std::size_t>(1, (std::size_t{1} << 17) / std::max<std::size_t>(1, block));
   parallel_for(static_cast<std::size_t>(count), grain, [&](std::size_t begin, std::size_t end) {
+    const Inflater inflater = make_inflater();
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint64_t wanted = i < full ? block : last;
-      uLongf made = wanted;
-      const auto* from = reinterpret_cast<const Bytef*>(packed.data() + begins[i]);
-      auto* to = reinterpret_cast<Bytef*>(result.owned.data() + i * block);
-      const int status = uncompress(to, &made, from, begins[i + 1] - begins[i]);
-      if (status == Z_MEM_ERROR) throw std::bad_alloc();
-      if (status != Z_OK || made != wanted)
+      std::size_t made = 0;
+      const libdeflate_result status =
+          libdeflate_zlib_decompress(inflater.get(), packed + begins[i], begins[i + 1] - begins[i],
+                                     result.owned.data() + i * block, wanted, &made);
+      if (status != LIBDEFLATE_SUCCESS || made != wanted)
         stream.malformed(fmt::format("has a damaged block of compressed data, number {}", i),
-                         fmt::format("{} bytes", wanted), status == Z_OK ? fmt::format("{} bytes", made) : "");
+                         fmt::format("{} bytes", wanted),
+                         status == LIBDEFLATE_SUCCESS ? fmt::format("{} bytes", made) : "");
     }
   });
-  result.bytes = result.owned.span();
+  result.first = result.owned.data();
   return result;
 }
 

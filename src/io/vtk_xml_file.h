@@ -25,11 +25,11 @@ bool is_vtk_xml(const Source& start);
 /// @throws Error  malformed_file, unsupported: XML, but not VTK's
 VtkXmlFile open_vtk_xml(const Source& source);
 
-/// The values of one array, of which `bytes` points into the file or into `owned`.
+/// The values of one array, which stand in the file or in `owned`.
 struct VtkXmlArray {
   Scalar type = Scalar::float32;
   std::endian order = std::endian::native;
-  std::span<const char> bytes;
+  Stored first;
   Bytes owned;
 };
 

@@ -1,12 +1,13 @@
 #include "io/zip_members.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 
+#include "io/file_bytes.h"
+#include "io/inflater.h"
 #include "io/values.h"
 
 namespace meniscus::io {
@@ -44,6 +45,7 @@ Directory directory_of(const Source& source) {
   const auto is_end = [&](std::size_t at) {
     return fields.u32(at) == 0x06054b50u && at + kEndSize + fields.u16(at + 20) <= size;
   };
+  source.need(least, size - least);
   while (end > least && !is_end(end - 1)) --end;
   if (end <= least)
     source.malformed("is no whole zip archive: the directory at its end is missing", size, "PK\\5\\6", {});
@@ -51,14 +53,17 @@ Directory directory_of(const Source& source) {
   if (fields.u16(at + 4) != 0 && fields.u16(at + 4) != 0xffff) source.unsupported("is one volume of a zip archive");
   Directory directory{fields.u32(at + 16), fields.u32(at + 12), fields.u16(at + 10)};
   const bool wide = directory.first == kNone32 || directory.size == kNone32 || directory.entries == 0xffff;
+  if (wide && at >= kLocatorSize) source.need(at - kLocatorSize, kLocatorSize);
   if (wide && at >= kLocatorSize && fields.u32(at - kLocatorSize) == 0x07064b50u) {
     const std::uint64_t place = fields.u64(at - kLocatorSize + 8);
     source.require(place, 1, kEnd64Size, "zip64 directory");
+    source.need(place, kEnd64Size);
     const auto wide_end = static_cast<std::size_t>(place);
     if (fields.u32(wide_end) != 0x06064b50u) source.malformed("has no zip64 directory where it says", place);
     directory = {fields.u64(wide_end + 48), fields.u64(wide_end + 40), fields.u64(wide_end + 32)};
   }
   source.require(directory.first, directory.size, 1, "directory");
+  source.need(directory.first, directory.size);
   if (directory.entries > directory.size / kEntrySize)
     source.malformed("its directory is too short for its members", at, fmt::format("{} members", directory.entries),
                      fmt::format("{} bytes", directory.size));
@@ -83,54 +88,27 @@ void read_extra(const Fields& fields, std::size_t at, std::size_t end, std::init
   }
 }
 
-std::uint32_t crc_of(std::span<const char> bytes) {
-  // Pieces in parallel, joined in their order.
-  constexpr std::size_t kPiece = std::size_t{1} << 20;
-  std::vector<uLong> sums((bytes.size() + kPiece - 1) / kPiece);
-  parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto piece = bytes.subspan(i * kPiece, std::min(kPiece, bytes.size() - i * kPiece));
-      sums[i] = crc32_z(0, reinterpret_cast<const Bytef*>(piece.data()), piece.size());
-    }
-  });
-  uLong all = crc32_z(0, nullptr, 0);
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    all = crc32_combine(all, sums[i], static_cast<z_off_t>(std::min(kPiece, bytes.size() - i * kPiece)));
-  return static_cast<std::uint32_t>(all);
+void check_sum(const Source& source, const ZipMember& member, std::uint32_t sum) {
+  if (sum != member.crc)
+    source.malformed(fmt::format("the member '{}' is damaged", member.name.substr(0, 60)), member.first,
+                     fmt::format("the sum {:08x}", member.crc), fmt::format("{:08x}", sum));
 }
 
-/// Raw deflate into memory of the size that was declared.
+/// Raw deflate, which is in memory, into memory of the size that was declared.
 Bytes inflated(const Source& source, const ZipMember& member) {
+  const Inflater inflater = make_inflater();
   Bytes bytes(static_cast<std::size_t>(member.size));
-  z_stream z{};
-  if (inflateInit2(&z, -MAX_WBITS) != Z_OK) throw std::bad_alloc();
-  struct Ender {
-    z_stream& z;
-    ~Ender() { inflateEnd(&z); }
-  } const ender{z};
-  constexpr std::size_t kMost = std::numeric_limits<uInt>::max() / 2;
   std::size_t read = 0, written = 0;
-  char beyond = 0;  // a byte more than declared is an error, too
-  int status = Z_OK;
-  while (status == Z_OK) {
-    const auto packed = static_cast<std::size_t>(member.packed_size);
-    const std::size_t in = std::min(kMost, packed - read);
-    const bool is_full = written == bytes.size();
-    const std::size_t out = is_full ? 1 : std::min(kMost, bytes.size() - written);
-    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(source.bytes.data() + member.first + read));
-    z.avail_in = static_cast<uInt>(in);
-    z.next_out = reinterpret_cast<Bytef*>(is_full ? &beyond : bytes.data() + written);
-    z.avail_out = static_cast<uInt>(out);
-    status = inflate(&z, Z_NO_FLUSH);
-    read += in - z.avail_in;
-    written += out - z.avail_out;
-    if (written > bytes.size()) break;
-  }
-  if (status != Z_STREAM_END || written != bytes.size())
-    source.malformed(fmt::format("the member '{}' is damaged", member.name.substr(0, 60)), member.first + read,
-                     fmt::format("{} bytes when unpacked", member.size),
-                     written > bytes.size() ? "more" : fmt::format("{}", written));
-  return bytes;
+  const libdeflate_result result = libdeflate_deflate_decompress_ex(inflater.get(), source.bytes.data() + member.first,
+                                                                    static_cast<std::size_t>(member.packed_size),
+                                                                    bytes.data(), bytes.size(), &read, &written);
+  const bool is_more = result == LIBDEFLATE_INSUFFICIENT_SPACE;
+  if (result == LIBDEFLATE_SUCCESS && written == bytes.size()) return bytes;
+  source.malformed(fmt::format("the member '{}' is damaged", member.name.substr(0, 60)), member.first,
+                   fmt::format("{} bytes when unpacked", member.size),
+                   is_more                        ? "more"
+                   : result == LIBDEFLATE_SUCCESS ? fmt::format("{}", written)
+                                                  : "no deflated data");
 }
 
 }  // namespace
@@ -152,6 +130,7 @@ std::vector<ZipMember> zip_members(const Source& source) {
     std::uint64_t local = fields.u32(at + 42);
     const std::size_t name = fields.u16(at + 28), extra = fields.u16(at + 30), comment = fields.u16(at + 32);
     source.require(at + kEntrySize, name + extra + comment, 1, "directory");
+    source.need(at + kEntrySize, name + extra + comment);
     member.name.assign(source.bytes.data() + at + kEntrySize, name);
     read_extra(fields, at + kEntrySize + name, at + kEntrySize + name + extra,
                {&member.size, &member.packed_size, &local});
@@ -164,6 +143,7 @@ std::vector<ZipMember> zip_members(const Source& source) {
                          "pack it with deflate, as numpy.savez_compressed() does");
     member.deflated = method == 8;
     source.require(local, 1, kLocalSize, "members");
+    source.need(local, kLocalSize);
     const auto before = static_cast<std::size_t>(local);
     if (fields.u32(before) != 0x04034b50u)
       source.malformed(fmt::format("its member '{}' is not where the directory says", member.name.substr(0, 60)),
@@ -188,19 +168,30 @@ std::vector<UnpackedMember> unpack(const Source& source, std::span<const ZipMemb
                 {"its members are larger than what particles would be when unpacked",
                  fmt::format("at most {} bytes", believable_size(source.bytes.size())), fmt::format("{} bytes", all),
                  source.path, std::nullopt, std::nullopt, "unpack the archive first if it is sound"});
+  for (const ZipMember& member : members)
+    if (member.deflated) source.need(member.first, member.packed_size);
   std::vector<UnpackedMember> unpacked(members.size());
   parallel_for(members.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ZipMember& member = members[i];
+      const auto size = static_cast<std::size_t>(member.size);
       if (member.deflated) unpacked[i].owned = inflated(source, member);
-      unpacked[i].plain = member.deflated ? unpacked[i].owned.span()
-                                          : source.bytes.subspan(member.first, static_cast<std::size_t>(member.size));
-      if (const std::uint32_t crc = crc_of(unpacked[i].plain); crc != member.crc)
-        source.malformed(fmt::format("the member '{}' is damaged", member.name.substr(0, 60)), member.first,
-                         fmt::format("the sum {:08x}", member.crc), fmt::format("{:08x}", crc));
+      unpacked[i].plain = member.deflated ? unpacked[i].owned.span() : source.bytes.subspan(member.first, size);
+      unpacked[i].file = member.deflated ? nullptr : source.file;
+      // What stays in a file is checked when it has been read.
+      if (unpacked[i].file == nullptr) check_sum(source, member, crc32_of(Stored(unpacked[i].plain.data()), size));
     }
   });
+  if (source.file != nullptr) source.file->keep_sums();
   return unpacked;
+}
+
+void check_stored(const Source& source, std::span<const ZipMember> members) {
+  if (source.file == nullptr) return;
+  for (const ZipMember& member : members)
+    if (!member.deflated)
+      check_sum(source, member,
+                source.file->crc32_of(source.bytes.data() + member.first, static_cast<std::size_t>(member.size)));
 }
 
 }  // namespace meniscus::io
