@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "io/frame_head.h"
+#include "io/index_texts.h"
 #include "io/positions.h"
 #include "io/readers.h"
 #include "io/unwritten.h"
@@ -16,7 +17,6 @@ namespace {
 constexpr std::size_t kHeaderSize = 5 + 9 * 4;
 constexpr std::size_t kWord = 4;
 constexpr std::uint32_t kMostAttributes = 65536;
-constexpr std::uint32_t kShownTexts = 6;  ///< of an index, in a note
 
 enum class Kind : std::uint32_t { real = 0, integer = 1, text = 2, mixed = 3, index = 4, vector = 5 };
 
@@ -24,7 +24,7 @@ struct PointAttribute {
   std::string name;
   std::size_t words = 0;  ///< 32-bit values a point
   Kind kind = Kind::real;
-  std::string texts;  ///< what the first numbers of an index mean: "0 'water', 1 'oil'"
+  IndexTexts texts;  ///< of an index
 };
 
 struct Header {
@@ -103,11 +103,7 @@ std::optional<Header> header_of(const Source& source) {
         break;
       case Kind::index: {
         const std::uint32_t strings = cursor.number_32();
-        for (std::uint32_t s = 0; s < strings && !cursor.short_of_bytes; ++s) {
-          const std::string text = cursor.text();
-          if (s < kShownTexts) attribute.texts += fmt::format("{}{} '{}'", s > 0 ? ", " : "", s, text.substr(0, 40));
-        }
-        if (strings > kShownTexts) attribute.texts += " ...";
+        for (std::uint32_t s = 0; s < strings && !cursor.short_of_bytes; ++s) attribute.texts.add(cursor.text());
         break;
       }
       case Kind::text:
@@ -142,9 +138,7 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
       attribute.components = static_cast<int>(description.words);
       parts.push_back({type, word * kWord, description.words, nullptr});
     }
-    if (is_index)
-      particles.notes.push_back(
-          fmt::format("attribute '{}' gives its texts as numbers: {}", description.name, description.texts));
+    if (is_index) particles.notes.push_back(description.texts.note(description.name));
     word += description.words;
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -154,9 +148,7 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
   set_positions(Scalar::float32, std::endian::big,
                 {Column{first, stride}, {first + kWord, stride}, {first + 2 * kWord, stride}}, count, options,
                 particles, {first, stride, parts});
-  if (header.primitives > 0) {
-    particles.notes.push_back(fmt::format("{} primitives were left out: only the points are read", header.primitives));
-  }
+  note_primitives(header.primitives, particles);
   return particles;
 }
 

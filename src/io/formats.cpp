@@ -6,6 +6,7 @@
 #include <array>
 
 #include "io/csv_write.h"
+#include "io/houdini_json.h"
 #include "io/particle_writers.h"
 #include "io/raw.h"
 #include "io/readers.h"
@@ -41,6 +42,7 @@ void look_at_hdf5_file(const Source& start, FrameHead& head) { look_at_hdf5(star
 
 const std::array kFormats{
     Format{"bgeo", "classic BGEO", {".bgeo"}, is_bgeo, read_bgeo, look_at_bgeo},
+    Format{"houdini", "Houdini geometry", {".geo"}, is_houdini_json, read_houdini, look_at_houdini},
     Format{"vtk", "legacy VTK", {".vtk"}, is_vtk, read_vtk, look_at_vtk},
     Format{"vtkxml", "VTK XML", {".vtu", ".vtp", ".pvtu", ".pvtp"}, is_vtk_xml, read_vtk_xml, look_at_vtk_xml},
     Format{"series", "a list of frames", {".pvd", ".series"}, is_json_series, refuse_series},
@@ -79,8 +81,11 @@ std::string shown_start(std::span<const char> bytes) {
 
 /// Formats that are known not to be read, by their first bytes.
 void refuse_known(const Source& source) {
-  if (source.starts_with("\x7fNSJ") || source.starts_with("[\n") || source.starts_with("PGEOMETRY"))
-    source.unsupported("is Houdini geometry, but not classic binary BGEO", "export it as classic BGEO version 5");
+  if (source.starts_with("scf1"))
+    source.unsupported("is Houdini geometry compressed with Blosc (.bgeo.sc)",
+                       "decompress it with Houdini: gconvert FILE.bgeo.sc FILE.bgeo, or write .bgeo or .bgeo.gz");
+  if (source.starts_with("PGEOMETRY"))
+    source.unsupported("is Houdini's classic geometry as text", "export it as classic BGEO version 5");
   if (source.starts_with("<?xml"))
     source.unsupported("is XML, but not of VTK", "export it as .vtu, .vtp or legacy .vtk");
 }

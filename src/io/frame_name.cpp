@@ -26,7 +26,7 @@ std::string_view without_zeros(std::string_view digits) {
 }
 
 // Dense binary formats of particles first, then those that also hold meshes, then text.
-constexpr std::array<std::pair<std::string_view, int>, 13> kExtensions{{{".bgeo", 0},
+constexpr std::array<std::pair<std::string_view, int>, 14> kExtensions{{{".bgeo", 0},
                                                                         {".vtk", 1},
                                                                         {".vtu", 1},
                                                                         {".vtp", 1},
@@ -35,6 +35,7 @@ constexpr std::array<std::pair<std::string_view, int>, 13> kExtensions{{{".bgeo"
                                                                         {".hdf5", 2},
                                                                         {".h5", 2},
                                                                         {".ply", 3},
+                                                                        {".geo", 4},
                                                                         {".xyz", 4},
                                                                         {".csv", 5},
                                                                         {".txt", 6},
