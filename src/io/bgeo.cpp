@@ -5,9 +5,8 @@
 
 #include "io/frame_head.h"
 #include "io/index_texts.h"
-#include "io/positions.h"
+#include "io/particle_rows.h"
 #include "io/readers.h"
-#include "io/unwritten.h"
 
 namespace meniscus::io {
 namespace {
@@ -128,26 +127,15 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
   Particles particles;
   particles.format = "bgeo";
   std::size_t word = 4;  // the fourth is the homogeneous w, 1
-  std::vector<RowPart> parts;
+  std::vector<RowValue> values;
   for (const PointAttribute& description : header.attributes) {
     const bool is_index = description.kind == Kind::index;
-    if (description.words > 0) {
-      const Scalar type = is_index || description.kind == Kind::integer ? Scalar::int32 : Scalar::float32;
-      Attribute& attribute = particles.attributes.emplace_back();
-      attribute.name = description.name;
-      attribute.components = static_cast<int>(description.words);
-      parts.push_back({type, word * kWord, description.words, nullptr});
-    }
+    const Scalar type = is_index || description.kind == Kind::integer ? Scalar::int32 : Scalar::float32;
+    if (description.words > 0) values.push_back({description.name, type, word * kWord, description.words});
     if (is_index) particles.notes.push_back(description.texts.note(description.name));
     word += description.words;
   }
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    resize_unwritten(particles.attributes[i].values, count * parts[i].components);
-    parts[i].target = particles.attributes[i].values.data();
-  }
-  set_positions(Scalar::float32, std::endian::big,
-                {Column{first, stride}, {first + kWord, stride}, {first + 2 * kWord, stride}}, count, options,
-                particles, {first, stride, parts});
+  set_rows(first, stride, count, std::endian::big, values, options, particles);
   note_primitives(header.primitives, particles);
   return particles;
 }

@@ -65,7 +65,7 @@ FrameSequence frames_of_directory(const std::string& directory) {
   if (!sequence.frames.empty()) return sequence;
 
   // Simulators often write into directories below the one that was named.
-  std::string advice = "frames are .bgeo, .vtk, .vtu, .vtp, .ply, .hdf5, .xyz, .txt or .csv files";
+  std::string advice = "frames are .bgeo, .vtk, .vtu, .vtp, .ply, .hdf5, .geo, .xyz, .txt or .csv files";
   for (const std::string& below : listing.directories) {
     std::vector<std::string> files;
     try {

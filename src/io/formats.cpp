@@ -29,6 +29,9 @@ bool is_text(const Source& start) {
 }
 
 bool is_bgeo(const Source& start) { return start.starts_with("BgeoV"); }
+bool is_geo(const Source& start) {
+  return start.starts_with("PGEOMETRY") || start.starts_with("\xef\xbb\xbfPGEOMETRY");
+}
 bool is_vtk(const Source& start) {
   return start.starts_with("# vtk DataFile") || start.starts_with("\xef\xbb\xbf# vtk DataFile");
 }
@@ -43,6 +46,9 @@ void look_at_hdf5_file(const Source& start, FrameHead& head) { look_at_hdf5(star
 const std::array kFormats{
     Format{"bgeo", "classic BGEO", {".bgeo"}, is_bgeo, read_bgeo, look_at_bgeo},
     Format{"houdini", "Houdini geometry", {".geo"}, is_houdini_json, read_houdini, look_at_houdini},
+    Format{"geo", "Houdini's classic text", {}, is_geo, read_geo, look_at_geo},
+    Format{"pdb", "Maya's PDB", {".pdb"}, is_pdb, read_pdb, look_at_pdb},
+    Format{"realflow", "RealFlow's BIN", {}, is_realflow, read_realflow, look_at_realflow},
     Format{"vtk", "legacy VTK", {".vtk"}, is_vtk, read_vtk, look_at_vtk},
     Format{"vtkxml", "VTK XML", {".vtu", ".vtp", ".pvtu", ".pvtp"}, is_vtk_xml, read_vtk_xml, look_at_vtk_xml},
     Format{"series", "a list of frames", {".pvd", ".series"}, is_json_series, refuse_series},
@@ -84,8 +90,6 @@ void refuse_known(const Source& source) {
   if (source.starts_with("scf1"))
     source.unsupported("is Houdini geometry compressed with Blosc (.bgeo.sc)",
                        "decompress it with Houdini: gconvert FILE.bgeo.sc FILE.bgeo, or write .bgeo or .bgeo.gz");
-  if (source.starts_with("PGEOMETRY"))
-    source.unsupported("is Houdini's classic geometry as text", "export it as classic BGEO version 5");
   if (source.starts_with("<?xml"))
     source.unsupported("is XML, but not of VTK", "export it as .vtu, .vtp or legacy .vtk");
 }
@@ -112,13 +116,8 @@ const Format& format_of(const Source& start) {
     if (is_marked(format) && named(format))
       start.malformed(fmt::format("is named {} but is not {}", format.endings.front(), format.title), 0, {},
                       shown_start(start.bytes));
-  for (const std::string_view extension : {".pdb", ".pda"})
-    if (name.ends_with(extension) && !is_text(start))
-      start.unsupported(fmt::format("is a {} file of Maya, which is not read", extension),
-                        "convert it with Partio: partconvert FILE FILE.bgeo");
-  if (name.ends_with(".bin") && !is_text(start))
-    start.unsupported("is a .bin file, which is not read: RealFlow's, or a program's own",
-                      "RealFlow: partconvert FILE FILE.bgeo of Partio; plain numbers: --raw f32x3");
+  if (name.ends_with(".bin") && (start.bytes.empty() || !is_text(start)))
+    start.unsupported("is a .bin file of a program's own", "plain numbers: --raw f32x3");
   for (const std::string_view extension : {".obj", ".stl", ".abc", ".vdb", ".usd", ".png"})
     if (name.ends_with(extension)) start.unsupported(fmt::format("a {} file holds no particles to read", extension));
   for (const Format& format : kFormats)

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "io/bytes.h"
+#include "io/readers.h"
 #include "io/series.h"
 #include "io/text.h"
 
@@ -44,13 +45,22 @@ bool has_numbers(const std::string& path) {
   return false;
 }
 
+/// Whether a file that is no text is of one of the formats with such names.
+bool holds_particles(const std::string& path) {
+  const Bytes start = read_file(path, 1 << 12);
+  const Source source{path, start.span()};
+  return source.starts_with("\x1f\x8b") || is_realflow(source) || is_pdb(source);
+}
+
 /// Series of kinds that are read.
 std::vector<Series> readable(const std::vector<std::string>& paths) {
   std::vector<Series> all = series_of(paths);
   std::erase_if(all, [](const Series& series) {
     if (!rank_of_extension(series.extension)) return true;
     try {
-      return is_any_text(series.extension) && !has_numbers(series.frames[0].path);
+      const std::string& first = series.frames[0].path;
+      return (is_any_text(series.extension) && !has_numbers(first)) ||
+             (is_any_binary(series.extension) && !holds_particles(first));
     } catch (const Error&) {
       return true;  // a file that cannot be opened tells nothing
     }
