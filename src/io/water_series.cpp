@@ -13,17 +13,7 @@
 namespace meniscus::io {
 namespace {
 
-/// 0 for names that speak of water, 2 for those of something else, 1 for all others.
-int class_of(const Series& series) {
-  constexpr std::array<std::string_view, 17> kOthers{"foam",  "spray", "bubble",  "whitewater", "bound",  "wall",
-                                                     "solid", "rigid", "rb_",     "obstacle",   "mesh",   "surface",
-                                                     "tank",  "floor", "diffuse", "terrain",    "emitter"};
-  constexpr std::array<std::string_view, 3> kWater{"fluid", "water", "liquid"};
-  const std::string name = lower(series.stem);
-  const auto speaks_of = [&](std::string_view word) { return name.find(word) != std::string::npos; };
-  if (std::any_of(kOthers.begin(), kOthers.end(), speaks_of)) return 2;
-  return std::any_of(kWater.begin(), kWater.end(), speaks_of) ? 0 : 1;
-}
+int class_of(const Series& series) { return water_class(series.stem); }
 
 /// Whether a text file has a line of three numbers among its first.
 bool has_numbers(const std::string& path) {
@@ -100,6 +90,17 @@ std::string note_of(const Series& chosen, const std::vector<Series>& left_out) {
 }
 
 }  // namespace
+
+int water_class(std::string_view stem) {
+  constexpr std::array<std::string_view, 17> kOthers{"foam",  "spray", "bubble",  "whitewater", "bound",  "wall",
+                                                     "solid", "rigid", "rb_",     "obstacle",   "mesh",   "surface",
+                                                     "tank",  "floor", "diffuse", "terrain",    "emitter"};
+  constexpr std::array<std::string_view, 3> kWater{"fluid", "water", "liquid"};
+  const std::string name = lower(stem);
+  const auto speaks_of = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+  if (std::any_of(kOthers.begin(), kOthers.end(), speaks_of)) return 2;
+  return std::any_of(kWater.begin(), kWater.end(), speaks_of) ? 0 : 1;
+}
 
 std::string likeliest_water(const std::vector<std::string>& paths) {
   std::vector<Series> each;
