@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -38,8 +39,11 @@ void convert(const ConvertArguments& arguments) {
   std::size_t written = 0, failed = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const FramePath& frame = sequence.frames[i];
-    std::error_code ignored;
-    if (std::filesystem::equivalent(frame.path, targets[i], ignored))
+    const auto is_target = [&](const std::string& path) {
+      std::error_code ignored;
+      return std::filesystem::equivalent(path, targets[i], ignored);
+    };
+    if (is_target(frame.path) || std::any_of(frame.further.begin(), frame.further.end(), is_target))
       throw UsageError(targets[i] + " would be written over itself: give another name");
     Particles particles;
     try {

@@ -50,6 +50,7 @@ struct FramePath {
   std::optional<std::int64_t> number;  ///< the frame number in its name, if it has one
   std::optional<std::size_t> place;    ///< from 0, in the sequence that it was picked from; none: it was not picked
   std::optional<double> time;          ///< s, where a file that lists the series tells
+  std::vector<std::string> further{};  ///< files that hold the rest of the frame, in order; empty: `path` holds all
 };
 
 /// What is known of a sequence that stands in no files before any of its frames is made.

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "io/frame_head.h"
-#include "io/positions.h"
+#include "io/index_texts.h"
+#include "io/particle_rows.h"
 #include "io/readers.h"
-#include "io/unwritten.h"
 
 namespace meniscus::io {
 namespace {
@@ -16,7 +16,6 @@ namespace {
 constexpr std::size_t kHeaderSize = 5 + 9 * 4;
 constexpr std::size_t kWord = 4;
 constexpr std::uint32_t kMostAttributes = 65536;
-constexpr std::uint32_t kShownTexts = 6;  ///< of an index, in a note
 
 enum class Kind : std::uint32_t { real = 0, integer = 1, text = 2, mixed = 3, index = 4, vector = 5 };
 
@@ -24,7 +23,7 @@ struct PointAttribute {
   std::string name;
   std::size_t words = 0;  ///< 32-bit values a point
   Kind kind = Kind::real;
-  std::string texts;  ///< what the first numbers of an index mean: "0 'water', 1 'oil'"
+  IndexTexts texts;  ///< of an index
 };
 
 struct Header {
@@ -106,11 +105,7 @@ std::optional<Header> header_of(const Source& source) {
         break;
       case Kind::index: {
         const std::uint32_t strings = cursor.number_32();
-        for (std::uint32_t s = 0; s < strings && !cursor.short_of_bytes; ++s) {
-          const std::string text = cursor.text();
-          if (s < kShownTexts) attribute.texts += fmt::format("{}{} '{}'", s > 0 ? ", " : "", s, text.substr(0, 40));
-        }
-        if (strings > kShownTexts) attribute.texts += " ...";
+        for (std::uint32_t s = 0; s < strings && !cursor.short_of_bytes; ++s) attribute.texts.add(cursor.text());
         break;
       }
       case Kind::text:
@@ -135,31 +130,16 @@ Particles points_of(const Source& source, const Header& header, const ReadOption
   Particles particles;
   particles.format = "bgeo";
   std::size_t word = 4;  // the fourth is the homogeneous w, 1
-  std::vector<RowPart> parts;
+  std::vector<RowValue> values;
   for (const PointAttribute& description : header.attributes) {
     const bool is_index = description.kind == Kind::index;
-    if (description.words > 0) {
-      const Scalar type = is_index || description.kind == Kind::integer ? Scalar::int32 : Scalar::float32;
-      Attribute& attribute = particles.attributes.emplace_back();
-      attribute.name = description.name;
-      attribute.components = static_cast<int>(description.words);
-      parts.push_back({type, word * kWord, description.words, nullptr});
-    }
-    if (is_index)
-      particles.notes.push_back(
-          fmt::format("attribute '{}' gives its texts as numbers: {}", description.name, description.texts));
+    const Scalar type = is_index || description.kind == Kind::integer ? Scalar::int32 : Scalar::float32;
+    if (description.words > 0) values.push_back({description.name, type, word * kWord, description.words});
+    if (is_index) particles.notes.push_back(description.texts.note(description.name));
     word += description.words;
   }
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    resize_unwritten(particles.attributes[i].values, count * parts[i].components);
-    parts[i].target = particles.attributes[i].values.data();
-  }
-  set_positions(Scalar::float32, std::endian::big,
-                {Column{first, stride}, {first + kWord, stride}, {first + 2 * kWord, stride}}, count, options,
-                particles, {first, stride, parts});
-  if (header.primitives > 0) {
-    particles.notes.push_back(fmt::format("{} primitives were left out: only the points are read", header.primitives));
-  }
+  set_rows(first, stride, count, std::endian::big, values, options, particles);
+  note_primitives(header.primitives, particles);
   return particles;
 }
 

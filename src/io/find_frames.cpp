@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include "io/series.h"
@@ -58,14 +59,41 @@ Listing listing_of(const std::string& directory, const std::string& prefix) {
   return listing;
 }
 
-FrameSequence frames_of_directory(const std::string& directory) {
+/// The frames as a list (.pvd, .series) beside them has them, with their times, if one names all of them; else as they
+/// were found.
+FrameSequence listed_there(const std::vector<std::string>& files, FrameSequence found, const ReadOptions& options) {
+  const auto plain = [](const std::string& path) { return fs::path(path).lexically_normal().string(); };
+  for (const std::string& file : files) {
+    if (!is_series_name(file)) continue;
+    try {
+      FrameSequence listed = frames_of_series(file, options);
+      std::set<std::string> named;
+      for (const FramePath& frame : listed.frames) {
+        named.insert(plain(frame.path));
+        for (const std::string& part : frame.further) named.insert(plain(part));
+      }
+      // A list of more frames lists more than the water.
+      if (listed.frames.size() > found.frames.size() ||
+          !std::all_of(found.frames.begin(), found.frames.end(),
+                       [&](const FramePath& frame) { return named.contains(plain(frame.path)); }))
+        continue;
+      listed.notes.insert(listed.notes.begin(), found.notes.begin(), found.notes.end());
+      return listed;
+    } catch (const Error&) {
+      continue;  // nobody asked for the list
+    }
+  }
+  return found;
+}
+
+FrameSequence frames_of_directory(const std::string& directory, const ReadOptions& options) {
   const std::string prefix = directory.ends_with('/') ? directory : directory + "/";
   const Listing listing = listing_of(directory, prefix);
   FrameSequence sequence = most_likely_water(listing.files);
-  if (!sequence.frames.empty()) return sequence;
+  if (!sequence.frames.empty()) return listed_there(listing.files, std::move(sequence), options);
 
   // Simulators often write into directories below the one that was named.
-  std::string advice = "frames are .bgeo, .vtk, .vtu, .vtp, .ply, .hdf5, .xyz, .txt or .csv files";
+  std::string advice = "frames are .bgeo, .vtk, .vtu, .vtp, .ply, .hdf5, .geo, .xyz, .txt or .csv files";
   for (const std::string& below : listing.directories) {
     std::vector<std::string> files;
     try {
@@ -211,7 +239,7 @@ FrameSequence find_frames(std::span<const std::string> arguments, const ReadOpti
     }
     flush();
     if (is_directory(argument)) {
-      append(sequence, frames_of_directory(argument));
+      append(sequence, frames_of_directory(argument, options));
     } else if (const std::string pattern = without_widths(argument); pattern.find("{}") != std::string::npos) {
       append(sequence, frames_of_pattern(pattern));
     } else if (argument.find_first_of("*?[") != std::string::npos) {

@@ -53,6 +53,7 @@ std::optional<FluidChoice> choose_fluid(const Particles& particles, bool& bounda
   const Attribute* type = scalar_of(particles, "type");
   const Attribute* mk = scalar_of(particles, "mk");
   const Attribute* tag = scalar_of(particles, "tag");
+  const Attribute* part = scalar_of(particles, "part type");
   // Other programs have a type, too: here it is DualSPHysics' if it is written as that writes it, or beside its others.
   const bool is_type = type != nullptr && (type->name == "Type" || mk != nullptr || scalar_of(particles, "idp"));
   if (is_type && are_classes(type->values, kFluidType)) {
@@ -66,6 +67,10 @@ std::optional<FluidChoice> choose_fluid(const Particles& particles, bool& bounda
     choice.is_fluid = marked(tag->values, [](float value) { return value == 0; });
     choice.reason = "their tag says that they are copies (1 of another process, 2 ghosts)";
     if (std::find(choice.is_fluid.begin(), choice.is_fluid.end(), 1) == choice.is_fluid.end()) return std::nullopt;
+  } else if (part != nullptr && (scalar_of(particles, "part id") || scalar_of(particles, "part flags")) &&
+             are_classes(part->values, 3)) {
+    choice.is_fluid = marked(part->values, [](float value) { return value == 0; });
+    choice.reason = "their Part type says boundary (1), vertex (2) or test point (3), not fluid (0)";
   } else {
     return std::nullopt;
   }

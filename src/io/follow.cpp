@@ -47,7 +47,10 @@ std::optional<FrameSequence> FrameFollower::look() {
   for (std::size_t i = 0; i < found.frames.size(); ++i) found.frames[i].place = i;
   // Frames are given in order: one that is not whole yet keeps back those behind it.
   const auto first_open = std::find_if(found.frames.begin(), found.frames.end(), [&](const FramePath& frame) {
-    return !given_.contains(frame.path) && !settled(frame.path);
+    if (given_.contains(frame.path)) return false;
+    bool whole = settled(frame.path);
+    for (const std::string& part : frame.further) whole = settled(part) && whole;
+    return !whole;
   });
   found.frames.erase(first_open, found.frames.end());
   std::erase_if(found.frames, [&](const FramePath& frame) { return given_.contains(frame.path); });

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "io/csv_write.h"
+#include "io/houdini_json.h"
 #include "io/particle_writers.h"
 #include "io/raw.h"
 #include "io/readers.h"
@@ -28,6 +29,9 @@ bool is_text(const Source& start) {
 }
 
 bool is_bgeo(const Source& start) { return start.starts_with("BgeoV"); }
+bool is_geo(const Source& start) {
+  return start.starts_with("PGEOMETRY") || start.starts_with("\xef\xbb\xbfPGEOMETRY");
+}
 bool is_vtk(const Source& start) {
   return start.starts_with("# vtk DataFile") || start.starts_with("\xef\xbb\xbf# vtk DataFile");
 }
@@ -43,6 +47,10 @@ using Fetching = Format::Fetching;
 
 const std::array kFormats{
     Format{"bgeo", "classic BGEO", {".bgeo"}, is_bgeo, read_bgeo, look_at_bgeo, Fetching::reader},
+    Format{"houdini", "Houdini geometry", {".geo"}, is_houdini_json, read_houdini, look_at_houdini},
+    Format{"geo", "Houdini's classic text", {}, is_geo, read_geo, look_at_geo},
+    Format{"pdb", "Maya's PDB", {".pdb"}, is_pdb, read_pdb, look_at_pdb},
+    Format{"realflow", "RealFlow's BIN", {}, is_realflow, read_realflow, look_at_realflow},
     Format{"vtk", "legacy VTK", {".vtk"}, is_vtk, read_vtk, look_at_vtk, Fetching::reader},
     Format{"vtkxml",
            "VTK XML",
@@ -87,8 +95,9 @@ std::string shown_start(std::span<const char> bytes) {
 
 /// Formats that are known not to be read, by their first bytes.
 void refuse_known(const Source& source) {
-  if (source.starts_with("\x7fNSJ") || source.starts_with("[\n") || source.starts_with("PGEOMETRY"))
-    source.unsupported("is Houdini geometry, but not classic binary BGEO", "export it as classic BGEO version 5");
+  if (source.starts_with("scf1"))
+    source.unsupported("is Houdini geometry compressed with Blosc (.bgeo.sc)",
+                       "decompress it with Houdini: gconvert FILE.bgeo.sc FILE.bgeo, or write .bgeo or .bgeo.gz");
   if (source.starts_with("<?xml"))
     source.unsupported("is XML, but not of VTK", "export it as .vtu, .vtp or legacy .vtk");
 }
@@ -115,13 +124,8 @@ const Format& format_of(const Source& start) {
     if (is_marked(format) && named(format))
       start.malformed(fmt::format("is named {} but is not {}", format.endings.front(), format.title), 0, {},
                       shown_start(start.bytes));
-  for (const std::string_view extension : {".pdb", ".pda"})
-    if (name.ends_with(extension) && !is_text(start))
-      start.unsupported(fmt::format("is a {} file of Maya, which is not read", extension),
-                        "convert it with Partio: partconvert FILE FILE.bgeo");
-  if (name.ends_with(".bin") && !is_text(start))
-    start.unsupported("is a .bin file, which is not read: RealFlow's, or a program's own",
-                      "RealFlow: partconvert FILE FILE.bgeo of Partio; plain numbers: --raw f32x3");
+  if (name.ends_with(".bin") && (start.bytes.empty() || !is_text(start)))
+    start.unsupported("is a .bin file of a program's own", "plain numbers: --raw f32x3");
   for (const std::string_view extension : {".obj", ".stl", ".abc", ".vdb", ".usd", ".png"})
     if (name.ends_with(extension)) start.unsupported(fmt::format("a {} file holds no particles to read", extension));
   for (const Format& format : kFormats)

@@ -26,7 +26,7 @@ std::string_view without_zeros(std::string_view digits) {
 }
 
 // Dense binary formats of particles first, then those that also hold meshes, then text.
-constexpr std::array<std::pair<std::string_view, int>, 13> kExtensions{{{".bgeo", 0},
+constexpr std::array<std::pair<std::string_view, int>, 16> kExtensions{{{".bgeo", 0},
                                                                         {".vtk", 1},
                                                                         {".vtu", 1},
                                                                         {".vtp", 1},
@@ -35,6 +35,9 @@ constexpr std::array<std::pair<std::string_view, int>, 13> kExtensions{{{".bgeo"
                                                                         {".hdf5", 2},
                                                                         {".h5", 2},
                                                                         {".ply", 3},
+                                                                        {".pdb", 3},
+                                                                        {".bin", 3},
+                                                                        {".geo", 4},
                                                                         {".xyz", 4},
                                                                         {".csv", 5},
                                                                         {".txt", 6},
@@ -127,6 +130,11 @@ std::optional<int> rank_of_extension(std::string_view extension) {
 bool is_any_text(std::string_view extension) {
   extension = without_gz(extension);
   return extension == ".txt" || extension == ".csv" || extension == ".dat";
+}
+
+bool is_any_binary(std::string_view extension) {
+  extension = without_gz(extension);
+  return extension == ".bin" || extension == ".pdb";
 }
 
 std::string directory_of(const std::string& path) { return path.substr(0, path.find_last_of('/') + 1); }

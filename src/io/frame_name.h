@@ -29,6 +29,8 @@ std::optional<std::int64_t> number_of(const std::string& digits);
 std::optional<int> rank_of_extension(std::string_view extension);
 /// Whether files of this extension may be any text, so that their content must be looked at.
 bool is_any_text(std::string_view extension);
+/// The same of files that are no text: programs of all kinds write .bin, and .pdb are proteins more often than not.
+bool is_any_binary(std::string_view extension);
 
 /// The directory of a path with its last '/', or "".
 std::string directory_of(const std::string& path);

@@ -6,18 +6,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "io/half.h"
+
 namespace meniscus::io {
 namespace {
-
-/// A number of 16 bits (1 sign, 5 exponent, 10 fraction; IEEE 754) as a float.
-float float_of_half(unsigned half) {
-  const auto sign = static_cast<std::uint32_t>(half & 0x8000u) << 16;
-  const std::uint32_t exponent = (half >> 10) & 0x1fu, fraction = half & 0x3ffu;
-  if (exponent == 0x1f) return std::bit_cast<float>(sign | 0x7f800000u | fraction << 13);
-  if (exponent > 0) return std::bit_cast<float>(sign | (exponent + 112) << 23 | fraction << 13);
-  const float small = std::ldexp(static_cast<float>(fraction), -24);
-  return sign != 0 ? -small : small;
-}
 
 /// Where the rows and columns of an array of at most two dimensions stand.
 void lay_out(NumberArray& array, const NpyHeader& header, const NpyField& field) {

@@ -5,6 +5,7 @@
 
 #include "io/file_bytes.h"
 #include "io/formats.h"
+#include "io/join_pieces.h"
 #include "io/raw.h"
 #include "io/readable.h"
 #include "io/readers.h"
@@ -45,11 +46,26 @@ Particles read_any(const std::string& path, const ReadOptions& options) {
   return format.read(source, options);
 }
 
+/// A frame in several files. Which particles are kept is decided of all together: one file may hold boundaries alone.
+Particles read_parts(const FramePath& frame, const ReadOptions& options) {
+  ReadOptions all = options;
+  all.boundaries = true;
+  all.where.clear();
+  Particles particles = join_pieces(1 + frame.further.size(), all, [&](std::size_t part, const ReadOptions& reading) {
+    return read_particles(part == 0 ? frame.path : frame.further[part - 1], reading);
+  });
+  ReadOptions kept = options;
+  kept.scale = 1;  // which has been applied
+  finish(kept, particles);
+  return particles;
+}
+
 }  // namespace
 
 Particles read_frame(const FrameSequence& sequence, const FramePath& frame) {
   if (sequence.source) return sequence.source(frame);
-  Particles particles = read_particles(frame.path, sequence.reading);
+  Particles particles =
+      frame.further.empty() ? read_particles(frame.path, sequence.reading) : read_parts(frame, sequence.reading);
   if (frame.time && !particles.time) particles.time = frame.time;
   return particles;
 }

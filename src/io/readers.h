@@ -14,6 +14,22 @@ struct FrameHead;
 Particles read_bgeo(const Source& source, const ReadOptions& options);
 /// The same from a gzip stream, decompressing no more than the header asks for.
 Particles read_bgeo(const std::string& path, Gunzip& stream, const ReadOptions& options);
+/// Houdini's geometry of version 12 and later: JSON as text, and its binary encoding.
+Particles read_houdini(const Source& source, const ReadOptions& options);
+void look_at_houdini(const Source& start, FrameHead& head);
+/// Houdini's classic geometry as text, "PGEOMETRY V5".
+Particles read_geo(const Source& source, const ReadOptions& options);
+void look_at_geo(const Source& start, FrameHead& head);
+/// Maya's particles, PDB, with pointers of 32 or 64 bits, in both byte orders.
+Particles read_pdb(const Source& source, const ReadOptions& options);
+void look_at_pdb(const Source& start, FrameHead& head);
+bool is_pdb(const Source& start);
+/// RealFlow's particles, BIN, versions 1 to 15.
+Particles read_realflow(const Source& source, const ReadOptions& options);
+void look_at_realflow(const Source& start, FrameHead& head);
+bool is_realflow(const Source& start);
+/// Adds a note that primitives were left out, if there are any.
+void note_primitives(std::uint64_t count, Particles& particles);
 /// Legacy VTK, versions 1 to 5.1, ASCII and binary.
 Particles read_vtk(const Source& source, const ReadOptions& options);
 /// PLY 1.0, ASCII and binary of both byte orders.

@@ -25,6 +25,8 @@ FrameSequence most_likely_water(const std::vector<std::string>& paths);
 
 /// Of paths that are different things at one time (fluid, boundary), the one that is most likely the water.
 std::string likeliest_water(const std::vector<std::string>& paths);
+/// 0 for names that speak of water, 2 for those of something else (foam, boundary), 1 for all others.
+int water_class(std::string_view name);
 
 /// "frame 450 is missing (frames come every 90)", or nothing. The step is the most common difference.
 std::optional<std::string> missing_note(const std::vector<FramePath>& frames);

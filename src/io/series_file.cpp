@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 
+#include "io/frame_head.h"
 #include "io/named_files.h"
 #include "io/readable.h"
 #include "io/series.h"
@@ -25,7 +27,9 @@ constexpr std::size_t kMostListed = 5;  ///< names in a note
 struct Entry {
   std::string name;
   std::optional<double> time;
+  std::string group;   ///< files of different groups are different things
   std::string part;    ///< which of several files of one time; empty: the only one
+  std::string label;   ///< what the list calls it: "Particles"
   std::size_t at = 0;  ///< byte offset, for messages
 };
 
@@ -38,7 +42,8 @@ std::vector<Entry> entries_of_collection(const Source& source) {
   std::vector<Entry> entries;
   for (const XmlElement& set : list->children) {
     if (set.name != "DataSet") continue;
-    Entry entry{set.value("file"), std::nullopt, set.value("group") + "/" + set.value("part"), set.at};
+    const std::string group = set.value("group");
+    Entry entry{set.value("file"), std::nullopt, group, group + "/" + set.value("part"), set.value("name"), set.at};
     double time = 0;
     if (const std::string* text = set.find("timestep")) {
       const std::vector<std::string_view> words = words_of(*text);
@@ -86,36 +91,87 @@ std::vector<Entry> entries_of_json(const Source& source) {
   return entries;
 }
 
-/// The name of the part, of those that a list has, that is most likely the water; a note tells of the others.
-std::string water_among(const Source& source, const std::vector<Entry>& entries, const ReadOptions& options,
-                        std::vector<std::string>& notes) {
-  std::map<std::string, std::string> first_paths;  // of each part
-  for (const Entry& entry : entries)
-    if (!first_paths.contains(entry.part))
-      first_paths[entry.part] = path_of_named(source, entry.name, entry.at, options);
-  if (first_paths.size() <= 1) return first_paths.empty() ? "" : first_paths.begin()->first;
-  // Parts that follow each other in time, as lists of restarted runs have them, are no parts of one time.
-  bool together = false;
+/// What several files of one time are told by: the first of each part.
+struct Part {
+  std::string name;
+  std::string group;
+  std::string path;
+  int kind = 1;  ///< as water_class() gives it
+};
+
+/// Whether parts of one time are parts of one thing: their names differ in digits only, or they stand in one group and
+/// have the same number of values a particle.
+bool belong_together(const Part& a, const Part& b, const ReadOptions& options) {
+  const FrameName name_a(name_in(a.path)), name_b(name_in(b.path));
+  if (name_a.extension != name_b.extension) return false;
+  if (name_a.texts == name_b.texts) return true;
+  if (a.group != b.group) return false;
+  if (a.kind == 0 && b.kind == 0) return true;
+  try {
+    return std::abs(look_at_frame(a.path, options).values - look_at_frame(b.path, options).values) < 0.5;
+  } catch (const Error&) {
+    return false;  // what cannot be looked at tells nothing
+  }
+}
+
+/// Whether several files have one time.
+bool have_common_times(const std::vector<Entry>& entries) {
   std::map<double, std::string> part_at;
   for (const Entry& entry : entries) {
     const auto [place, is_new] = part_at.try_emplace(entry.time.value_or(0), entry.part);
-    together = together || (!is_new && place->second != entry.part);
+    if (!is_new && place->second != entry.part) return true;
   }
-  if (!together) return {};
+  return false;
+}
 
-  std::vector<std::string> paths;
-  for (const auto& [part, path] : first_paths) paths.push_back(path);
-  const std::string water = likeliest_water(paths);
-  std::string others;
-  std::size_t listed = 0;
-  std::string chosen = first_paths.begin()->first;
-  for (const auto& [part, path] : first_paths) {
-    if (path == water) chosen = part;
-    if (path != water && listed++ < kMostListed) others += (others.empty() ? "" : ", ") + path;
+/// 0 water, 2 something else, 1 nobody knows, by the name of a file and by what a list calls it.
+int kind_of(const std::string& name, const std::string& label) {
+  if (water_class(name) == 2 || water_class(label) == 2) return 2;
+  const bool particles = lower(label).find("particle") != std::string::npos;
+  return particles || water_class(name) == 0 || water_class(label) == 0 ? 0 : 1;
+}
+
+/// The parts of a list, in the order in which they appear.
+std::vector<Part> parts_of(const Source& source, const std::vector<Entry>& entries, const ReadOptions& options) {
+  std::vector<Part> parts;
+  std::set<std::string> known;
+  for (const Entry& entry : entries) {
+    if (!known.insert(entry.part).second) continue;
+    const std::string path = path_of_named(source, entry.name, entry.at, options);
+    parts.push_back({entry.part, entry.group, path, kind_of(name_in(path), entry.label)});
   }
-  notes.push_back(fmt::format("'{}' has {} parts a frame; took the one of {} for the water, left out {}{}", source.path,
-                              first_paths.size(), water, others, listed > kMostListed ? " and more" : ""));
-  return chosen;
+  return parts;
+}
+
+/// The names of the parts that are the water, of those that a list has; none: the parts follow each other in time, as
+/// lists of restarted runs have them, and all are. A note tells of what was left out.
+std::set<std::string> water_among(const Source& source, const std::vector<Entry>& entries, const ReadOptions& options,
+                                  std::vector<std::string>& notes) {
+  const std::vector<Part> parts = parts_of(source, entries, options);
+  if (parts.size() <= 1 || !have_common_times(entries)) return {};
+  // Of the parts whose names are the most promising one is certain; those that belong to it are the rest of it.
+  const int best =
+      std::min_element(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.kind < b.kind; })->kind;
+  std::vector<std::string> paths;
+  for (const Part& part : parts)
+    if (part.kind == best) paths.push_back(part.path);
+  const std::string water = likeliest_water(paths);
+  const Part& certain = *std::find_if(parts.begin(), parts.end(), [&](const Part& part) { return part.path == water; });
+  std::set<std::string> taken;
+  std::string others;
+  std::size_t left_out = 0;
+  for (const Part& part : parts) {
+    if (&part == &certain || (part.kind == best && belong_together(certain, part, options))) {
+      taken.insert(part.name);
+    } else if (left_out++ < kMostListed) {
+      others += (others.empty() ? "" : ", ") + part.path;
+    }
+  }
+  if (left_out > 0)
+    notes.push_back(fmt::format("'{}' has {} parts a frame; took {} of {} for the water, left out {}{}", source.path,
+                                parts.size(), taken.size() == 1 ? "the one" : fmt::format("the {}", taken.size()),
+                                water, others, left_out > kMostListed ? " and more" : ""));
+  return taken;
 }
 
 /// Gives frames the numbers in their names.
@@ -144,34 +200,57 @@ bool is_json_series(const Source& start) {
 
 namespace {
 
+/// The entries of each frame: those of one time, but for parts that are not the water. A part that a time has twice
+/// begins another frame.
+std::vector<std::vector<const Entry*>> frames_of(const std::vector<Entry>& entries,
+                                                 const std::set<std::string>& water) {
+  std::vector<std::vector<const Entry*>> frames;
+  std::map<double, std::size_t> last_at;  // the last frame of each time
+  for (const Entry& entry : entries) {
+    if (!water.empty() && !water.contains(entry.part)) continue;
+    const auto last = water.size() > 1 && entry.time ? last_at.find(*entry.time) : last_at.end();
+    const auto is_same = [&](const Entry* other) { return other->part == entry.part; };
+    if (last != last_at.end() && std::none_of(frames[last->second].begin(), frames[last->second].end(), is_same)) {
+      frames[last->second].push_back(&entry);
+      continue;
+    }
+    if (entry.time) last_at[*entry.time] = frames.size();
+    frames.push_back({&entry});
+  }
+  return frames;
+}
+
 FrameSequence frames_listed(const std::string& path, const ReadOptions& options) {
   const Bytes bytes = read_file(path, kMostBytes);
   const Source source{path, bytes.span()};
   if (bytes.size() == kMostBytes) source.malformed("is far larger than a list of frames", kMostBytes);
   FrameSequence sequence;
   const std::vector<Entry> entries = is_vtk_xml(source) ? entries_of_collection(source) : entries_of_json(source);
-  const std::string water = water_among(source, entries, options, sequence.notes);
+  const std::set<std::string> water = water_among(source, entries, options, sequence.notes);
 
   std::size_t missing = 0;
   std::string missing_names;
-  for (const Entry& entry : entries) {
-    if (!water.empty() && entry.part != water) continue;
+  for (const std::vector<const Entry*>& parts : frames_of(entries, water)) {
     FramePath frame;
-    frame.path = path_of_named(source, entry.name, entry.at, options);
-    if (is_series_name(frame.path))
-      source.malformed("names another list of frames", entry.at, "frames", fmt::format("'{:.200}'", entry.name));
-    frame.time = entry.time;
-    std::error_code error;
-    if (std::filesystem::is_regular_file(frame.path, error)) {
-      sequence.frames.push_back(std::move(frame));
-    } else if (missing++ < kMostListed) {
-      missing_names += (missing_names.empty() ? "" : ", ") + entry.name;
+    frame.time = parts.front()->time;
+    bool whole = true;
+    for (const Entry* entry : parts) {
+      const std::string part = path_of_named(source, entry->name, entry->at, options);
+      if (is_series_name(part))
+        source.malformed("names another list of frames", entry->at, "frames", fmt::format("'{:.200}'", entry->name));
+      std::error_code error;
+      if (!std::filesystem::is_regular_file(part, error)) {
+        whole = false;
+        if (missing++ < kMostListed) missing_names += (missing_names.empty() ? "" : ", ") + entry->name;
+      }
+      (entry == parts.front() ? frame.path : frame.further.emplace_back()) = part;
     }
+    if (whole) sequence.frames.push_back(std::move(frame));
   }
   if (missing > 0)
-    sequence.notes.push_back(fmt::format("{} of the files that '{}' lists {} not there: {}{}", missing, path,
-                                         missing == 1 ? "is" : "are", missing_names,
-                                         missing > kMostListed ? ", ..." : ""));
+    sequence.notes.push_back(
+        fmt::format("{} of the files that '{}' lists {} not there, which leaves out their frames: {}{}", missing, path,
+                    missing == 1 ? "is" : "are", missing_names, missing > kMostListed ? ", ..." : ""));
   if (sequence.frames.empty())
     throw Error(
         ErrorCode::not_found,

@@ -162,8 +162,10 @@ VtkXmlArray VtkXmlArrays::read_plain(Stream& stream, std::uint64_t bytes) const 
   const std::uint64_t size = size_of(file_.header);
   const std::uint64_t length = word(stream.first(size));
   // Lengths of 32 bits wrap around in files of some writers.
-  const bool wrapped = size == 4 && length == (bytes & 0xffffffffu);
-  if (length != bytes && !wrapped)
+  const std::uint64_t most = size == 4 ? 0xffffffffu : ~std::uint64_t{0};
+  // GPUSPH splits vectors of four into x, y, z and w, and gives both the length of the whole.
+  const bool fourfold = stream.in_file() && length == (4 * bytes & most);
+  if (length != (bytes & most) && !fourfold)
     stream.malformed("has another length than its count asks for", fmt::format("{} bytes", bytes),
                      fmt::format("{} bytes", length));
   VtkXmlArray result;

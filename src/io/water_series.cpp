@@ -6,23 +6,14 @@
 #include <tuple>
 
 #include "io/bytes.h"
+#include "io/readers.h"
 #include "io/series.h"
 #include "io/text.h"
 
 namespace meniscus::io {
 namespace {
 
-/// 0 for names that speak of water, 2 for those of something else, 1 for all others.
-int class_of(const Series& series) {
-  constexpr std::array<std::string_view, 17> kOthers{"foam",  "spray", "bubble",  "whitewater", "bound",  "wall",
-                                                     "solid", "rigid", "rb_",     "obstacle",   "mesh",   "surface",
-                                                     "tank",  "floor", "diffuse", "terrain",    "emitter"};
-  constexpr std::array<std::string_view, 3> kWater{"fluid", "water", "liquid"};
-  const std::string name = lower(series.stem);
-  const auto speaks_of = [&](std::string_view word) { return name.find(word) != std::string::npos; };
-  if (std::any_of(kOthers.begin(), kOthers.end(), speaks_of)) return 2;
-  return std::any_of(kWater.begin(), kWater.end(), speaks_of) ? 0 : 1;
-}
+int class_of(const Series& series) { return water_class(series.stem); }
 
 /// Whether a text file has a line of three numbers among its first.
 bool has_numbers(const std::string& path) {
@@ -44,13 +35,22 @@ bool has_numbers(const std::string& path) {
   return false;
 }
 
+/// Whether a file that is no text is of one of the formats with such names.
+bool holds_particles(const std::string& path) {
+  const Bytes start = read_file(path, 1 << 12);
+  const Source source{path, start.span()};
+  return source.starts_with("\x1f\x8b") || is_realflow(source) || is_pdb(source);
+}
+
 /// Series of kinds that are read.
 std::vector<Series> readable(const std::vector<std::string>& paths) {
   std::vector<Series> all = series_of(paths);
   std::erase_if(all, [](const Series& series) {
     if (!rank_of_extension(series.extension)) return true;
     try {
-      return is_any_text(series.extension) && !has_numbers(series.frames[0].path);
+      const std::string& first = series.frames[0].path;
+      return (is_any_text(series.extension) && !has_numbers(first)) ||
+             (is_any_binary(series.extension) && !holds_particles(first));
     } catch (const Error&) {
       return true;  // a file that cannot be opened tells nothing
     }
@@ -90,6 +90,17 @@ std::string note_of(const Series& chosen, const std::vector<Series>& left_out) {
 }
 
 }  // namespace
+
+int water_class(std::string_view stem) {
+  constexpr std::array<std::string_view, 17> kOthers{"foam",  "spray", "bubble",  "whitewater", "bound",  "wall",
+                                                     "solid", "rigid", "rb_",     "obstacle",   "mesh",   "surface",
+                                                     "tank",  "floor", "diffuse", "terrain",    "emitter"};
+  constexpr std::array<std::string_view, 3> kWater{"fluid", "water", "liquid"};
+  const std::string name = lower(stem);
+  const auto speaks_of = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+  if (std::any_of(kOthers.begin(), kOthers.end(), speaks_of)) return 2;
+  return std::any_of(kWater.begin(), kWater.end(), speaks_of) ? 0 : 1;
+}
 
 std::string likeliest_water(const std::vector<std::string>& paths) {
   std::vector<Series> each;

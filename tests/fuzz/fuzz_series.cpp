@@ -44,9 +44,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const std::vector<std::string> arguments{list};
     for (const FramePath& frame : find_frames(arguments).frames) {
-      require(fs::is_regular_file(frame.path), "frames that are there");
       const std::string inside = directory.path().string() + "/";
-      require(fs::path(frame.path).lexically_normal().string().starts_with(inside), "frames in its directory");
+      std::vector<std::string> files = frame.further;
+      files.push_back(frame.path);
+      for (const std::string& file : files) {
+        require(fs::is_regular_file(file), "frames that are there");
+        require(fs::path(file).lexically_normal().string().starts_with(inside), "frames in its directory");
+      }
       require(!frame.time || std::isfinite(*frame.time), "finite times");
     }
   } catch (const Error& error) {

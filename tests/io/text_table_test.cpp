@@ -55,6 +55,40 @@ TEST(TextTable, OfDualSphysicsHasItsHeaderBelowOtherLines) {
   EXPECT_EQ(read_text(text).time, 0.25);
 }
 
+TEST(TextTable, OfPartVtkIsReadWithSemicolonsAndWithCommas) {
+  // Two lines on the frame, an empty one, names, rows; lines of names and rows end in a separator. -csvsep:1 is a
+  // comma.
+  const std::string text =
+      "TimeStep [s];Np;Nbound;Nfixed;Nmoving;Nfloat;Nfluid\n0.1500027;4;2;1;0;1;2\n\n"
+      "Pos.x [m];Pos.y [m];Pos.z [m];Zone;Idp;Vel.x [m/s];Vel.y [m/s];Vel.z [m/s];Rhop [kg/m^3];Mass [kg];Press [Pa];"
+      "Type;Mk;\n"
+      "-0.01;0;0;0;0;0;0;0;1000;0.008;0;0;11;\n"
+      "1;2;3;0;2;0.5;0;-1;1000.5;0.008;4.905e+02;3;1;\n"
+      "9;9;9;0;1;0;0;0;1000;0.008;0;2;60;\n"
+      "4;5;6;0;3;1.5;0;-2;1001;0.008;-1.2E-03;3;1;\n";
+  std::string commas = text;
+  std::replace(commas.begin(), commas.end(), ';', ',');
+  std::string dos = text;
+  for (std::size_t at = dos.find('\n'); at != std::string::npos; at = dos.find('\n', at + 2)) dos.insert(at, "\r");
+  for (const std::string& form : {text, commas, dos, "\xef\xbb\xbf" + text}) {
+    const Particles particles = read_text(form);
+    expect_two(particles, form);
+    EXPECT_EQ(particles.time, 0.1500027);
+    EXPECT_EQ(particles.find("velocity")->values, (std::vector<float>{0.5f, 0, -1, 1.5f, 0, -2}));
+    EXPECT_EQ(particles.find("density")->values, (std::vector<float>{1000.5f, 1001}));
+    EXPECT_EQ(particles.find("Press")->values, (std::vector<float>{490.5f, -1.2e-3f}));
+    EXPECT_EQ(particles.find("Mk")->values, (std::vector<float>{1, 1}));
+  }
+}
+
+TEST(TextTable, OfPartVtkOutNamesWhatWasLost) {
+  const Particles particles = read_text(
+      "Pos.x [m];Pos.y [m];Pos.z [m];PartOut;Motive;Idp;Vel.x [m/s];Vel.y [m/s];Vel.z [m/s];Rhop [kg/m^3];\n"
+      "1;2;3;1;1;10;2;0;0;1000;\n4;5;6;2;1;12;0;4;0;1000;\n");
+  expect_two(particles, "PartVtkOut");
+  EXPECT_EQ(particles.find("PartOut")->values, (std::vector<float>{1, 2}));
+}
+
 TEST(TextTable, WithNamesButWithoutRowsIsAnEmptyFrame) {
   EXPECT_TRUE(read_text("Pos.x [m],Pos.y [m],Pos.z [m],PartOut,Motive\n").empty());
   EXPECT_EQ(refused_text("Pos.x [m],Pos.y [m],Pos.z").code(), ErrorCode::malformed_file) << "a line without its end";

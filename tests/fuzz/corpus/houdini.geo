@@ -1,0 +1,27 @@
+[
+	"fileversion","19.5.303",
+	"hasindex",false,
+	"pointcount",3,
+	"primitivecount",1,
+	"info",{
+		"software":"Houdini 19.5"
+	},
+	"attributes",[
+		"pointattributes",[
+			[
+				["scope","public","type","numeric","name","P","options",{}],
+				["size",3,"storage","fpreal32","values",["size",3,"storage","fpreal32","packing",[2,1],"pagesize",2,
+					"constantpageflags",[[false,false],[true,true]],"rawpagedata",[0,0,1,1,7,2,2,7]]]
+			],
+			[
+				["scope","public","type","string","name","kind"],
+				["strings",["a","b"],"indices",["size",1,"arrays",[[0,1,0]]]]
+			],
+			[
+				["scope","public","type","numeric","name","v"],
+				["values",["size",3,"tuples",[[0,0,0],[1,2,3],[4,5,6]]]]
+			]
+		]
+	],
+	"primitives",[[["type","run"],[]]]
+]
