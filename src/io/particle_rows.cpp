@@ -5,8 +5,8 @@
 
 namespace meniscus::io {
 
-void set_rows(const char* first, std::size_t stride, std::size_t count, std::endian order,
-              std::span<const RowValue> values, const ReadOptions& options, Particles& particles) {
+void set_rows(Stored first, std::size_t stride, std::size_t count, std::endian order, std::span<const RowValue> values,
+              const ReadOptions& options, Particles& particles) {
   std::vector<RowPart> parts;
   const std::size_t before = particles.attributes.size();
   particles.attributes.resize(before + values.size());

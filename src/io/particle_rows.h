@@ -17,9 +17,10 @@ struct RowValue {
 };
 
 /// Fills the positions, three floats at the start of each row, and adds an attribute for each value. One pass.
-/// @param first   of the first row; all rows are in memory
+/// @param first   of the first row
 /// @param stride  bytes from row to row
-void set_rows(const char* first, std::size_t stride, std::size_t count, std::endian order,
-              std::span<const RowValue> values, const ReadOptions& options, Particles& particles);
+/// @throws Error  as FileBytes::fetch()
+void set_rows(Stored first, std::size_t stride, std::size_t count, std::endian order, std::span<const RowValue> values,
+              const ReadOptions& options, Particles& particles);
 
 }  // namespace meniscus::io

@@ -83,8 +83,8 @@ Particles read_realflow(const Source& source, const ReadOptions& options) {
   Particles particles;
   particles.format = "realflow";
   particles.time = value_at(source, kTime, Scalar::float32);
-  set_rows(source.bytes.data() + header.first, header.stride, static_cast<std::size_t>(header.count),
-           std::endian::little, header.values, options, particles);
+  set_rows(source.stored(header.first), header.stride, static_cast<std::size_t>(header.count), std::endian::little,
+           header.values, options, particles);
   return particles;
 }
 
