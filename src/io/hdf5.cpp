@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <mutex>
 
 #include "io/frame_head.h"
 #include "io/hdf5_layouts.h"
 #include "io/join_pieces.h"
 #include "io/readers.h"
+#include "io/try_apart.h"
 
 namespace meniscus::io {
 namespace {
@@ -98,6 +100,45 @@ void note_other_files(const Hdf5Group& file, Particles& particles) {
         "this file is one of {:.0f} of a snapshot: the others' particles are missing here; join them first", files));
 }
 
+/// Groups of a file that are read: the water, with options.boundaries what stands around it, too.
+std::vector<std::size_t> chosen_of(const std::vector<Hdf5Particles>& candidates, const ReadOptions& options) {
+  std::vector<std::size_t> chosen{0};
+  for (std::size_t i = 1; options.boundaries && i < candidates.size(); ++i)
+    if (candidates[i].is_boundary) chosen.push_back(i);
+  return chosen;
+}
+
+/// Has a copy of this process go through the file first: on some damaged files the library crashes, or does not come to
+/// an end, above all on those of its older form, which has no checksums.
+/// @param bytes   of the same file, for values that are read without the library; null: no values are read
+/// @throws Error  malformed_file
+void try_library(const std::string& path, const FileBytes* bytes, const ReadOptions& options) {
+  constexpr int kSeconds = 20;
+  constexpr std::uintmax_t kBytesASecond = 10'000'000;
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  const int seconds =
+      kSeconds + (unknown ? 0 : static_cast<int>(std::min<std::uintmax_t>(size / kBytesASecond, 86400)));
+  const std::optional<std::string> stopped = what_stops(
+      [&] {
+        const Hdf5Group file = Hdf5Group::open_file(path);
+        static_cast<void>(time_of(file));
+        std::vector<Hdf5Particles> candidates = particles_in(file, options, path);
+        if (bytes == nullptr) return;
+        for (const std::size_t i : chosen_of(candidates, options))
+          for (NumberArray& array : candidates[i].arrays) static_cast<void>(candidates[i].group.load(array, bytes));
+      },
+      seconds);
+  if (stopped)
+    throw Error(ErrorCode::malformed_file, {"is damaged: the HDF5 library fails on it, " + *stopped,
+                                            {},
+                                            {},
+                                            path,
+                                            {},
+                                            {},
+                                            "write the frame anew, or save with h5dump what can be read"});
+}
+
 }  // namespace
 
 void look_at_hdf5(const std::string& path, FrameHead& head) {
@@ -105,6 +146,7 @@ void look_at_hdf5(const std::string& path, FrameHead& head) {
   const QuietHdf5 quiet;
   head.format = "hdf5";
   head.particles = head.file_bytes / (3 * sizeof(float));
+  try_library(path, nullptr, {});
   const Hdf5Group file = Hdf5Group::open_file(path);
   try {
     const std::vector<Hdf5Particles> candidates = particles_in(file, {}, path);
@@ -125,13 +167,10 @@ Particles read_hdf5(const Source& start, const ReadOptions& options) {
   const std::string& path = start.path;
   const std::lock_guard lock(hdf5_mutex());
   const QuietHdf5 quiet;
+  try_library(path, start.file, options);
   const Hdf5Group file = Hdf5Group::open_file(path);
   std::vector<Hdf5Particles> candidates = particles_in(file, options, path);
-  // The water; with options.boundaries what stands around it, too.
-  std::vector<std::size_t> chosen{0};
-  if (options.boundaries)
-    for (std::size_t i = 1; i < candidates.size(); ++i)
-      if (candidates[i].is_boundary) chosen.push_back(i);
+  const std::vector<std::size_t> chosen = chosen_of(candidates, options);
   Particles particles = join_pieces(chosen.size(), options, [&](std::size_t piece, const ReadOptions& reading) {
     return read_group(candidates[chosen[piece]], start.file, reading);
   });

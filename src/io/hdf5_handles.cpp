@@ -78,6 +78,10 @@ Stored place_in(hid_t dataset, std::uint64_t size, const FileBytes* file) {
   return {bytes.data() + offset, file};
 }
 
+Error damaged(const std::string& what, const std::string& path) {
+  return {ErrorCode::malformed_file, {what + " is damaged", {}, {}, path, {}, {}, "write the frame again"}};
+}
+
 }  // namespace
 
 Hdf5Group Hdf5Group::open_file(const std::string& path) {
@@ -111,7 +115,8 @@ std::vector<std::string> Hdf5Group::names() const {
     found.emplace_back(name);
     return found.size() < kMostNames ? 0 : 1;
   };
-  H5Literate(handle_.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
+  if (H5Literate(handle_.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names) < 0)
+    throw damaged("the list of what a group holds", path_);
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -126,16 +131,20 @@ std::optional<NumberArray> Hdf5Group::describe(const std::string& name) const {
     array.type_name = "a link to another file";
     return array;
   }
+  // Links by name may lead nowhere; what others lead to is there.
+  const Hdf5Handle object(H5Oopen(handle_.get(), name.c_str(), access.get()), H5Oclose);
+  if (!object && link.type == H5L_TYPE_HARD) throw damaged(fmt::format("'{}'", name), path_);
+  if (!object || H5Iget_type(object.get()) != H5I_DATASET) return std::nullopt;
   const Hdf5Handle dataset(H5Dopen2(handle_.get(), name.c_str(), access.get()), H5Dclose);
-  if (!dataset) return std::nullopt;
-  const Hdf5Handle plan(H5Dget_create_plist(dataset.get()), H5Pclose);
-  if (!plan || H5Pget_layout(plan.get()) == H5D_VIRTUAL || H5Pget_external_count(plan.get()) != 0) {
+  const Hdf5Handle plan(dataset ? H5Dget_create_plist(dataset.get()) : hid_t{-1}, H5Pclose);
+  if (!plan) throw damaged(fmt::format("the array '{}'", name), path_);
+  if (H5Pget_layout(plan.get()) == H5D_VIRTUAL || H5Pget_external_count(plan.get()) != 0) {
     array.type_name = "values in other files";
     return array;
   }
   const Hdf5Handle type(H5Dget_type(dataset.get()), H5Tclose);
   const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  if (!type || !space) return std::nullopt;
+  if (!type || !space) throw damaged(fmt::format("the array '{}'", name), path_);
   std::array<hsize_t, H5S_MAX_RANK> lengths{};
   const int rank = H5Sget_simple_extent_dims(space.get(), lengths.data(), nullptr);
   for (int i = 0; i < rank; ++i) array.shape.push_back(lengths[static_cast<std::size_t>(i)]);
@@ -193,8 +202,7 @@ Bytes Hdf5Group::load(NumberArray& array, const FileBytes* file) const {
   Bytes bytes(static_cast<std::size_t>(count) * value);
   const hid_t type = plain_type(stored.get()) ? stored.get() : H5T_NATIVE_DOUBLE;
   if (count > 0 && H5Dread(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
-    throw Error(ErrorCode::malformed_file,
-                {fmt::format("the array '{}' is damaged", array.name), {}, {}, path_, {}, {}, "write the frame again"});
+    throw damaged(fmt::format("the array '{}'", array.name), path_);
   array.first = bytes.data();
   return bytes;
 }

@@ -36,6 +36,9 @@ class Hdf5Handle {
 class QuietHdf5 {
  public:
   QuietHdf5() {
+    // Of what damaged files leave open it would tell at the program's end.
+    static const herr_t no_end = H5dont_atexit();
+    static_cast<void>(no_end);
     H5Eget_auto2(H5E_DEFAULT, &print_, &argument_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
@@ -57,9 +60,11 @@ class Hdf5Group {
   /// The group inside this one, or none.
   std::optional<Hdf5Group> group(const std::string& name) const;
   /// Names of everything in it, sorted.
+  /// @throws Error malformed_file
   std::vector<std::string> names() const;
   /// What an array in it is, without its values; none if there is no array of that name. Links to other files and
   /// arrays whose values stand in other files are told of, but have no type: they are never followed.
+  /// @throws Error malformed_file: there is something that cannot be opened
   std::optional<NumberArray> describe(const std::string& name) const;
   /// Lets an array that describe() gave point to its values: to their place in `file`, where they stand there as they
   /// are, one after the other, else to what is returned, into which the library reads them.

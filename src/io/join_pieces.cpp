@@ -47,7 +47,6 @@ Particles join_pieces(std::size_t count, const ReadOptions& options,
     if (!joined.time) joined.time = piece.time;
     if (!joined.spacing) joined.spacing = piece.spacing;
     if (!joined.up) joined.up = piece.up;
-    joined.dropped_non_finite += piece.dropped_non_finite;
     add_notes(piece.notes, joined.notes);
   }
   std::erase_if(pieces, [](const Particles& piece) { return piece.empty(); });

@@ -56,7 +56,9 @@ Particles read_parts(const FramePath& frame, const ReadOptions& options) {
   });
   ReadOptions kept = options;
   kept.scale = 1;  // which has been applied
+  const std::size_t lost = std::exchange(particles.dropped_non_finite, std::size_t{0});
   finish(kept, particles);
+  particles.dropped_non_finite += lost;
   return particles;
 }
 

@@ -126,6 +126,28 @@ TEST(Hdf5, OfAnyPrefixIsRefused) {
   check_prefixes("f.hdf5", gadget, gadget.size(), 41);
 }
 
+TEST(Hdf5, OfChangedBytesIsReadOrRefused) {
+  // The library itself crashes on some of these.
+  const Scratch scratch;
+  int refusals = 0, read = 0;
+  for (const char* name : {"pysph_gzip.hdf5", "tiny.hdf5"}) {
+    const std::string whole = bytes_of_file(sample(name));
+    for (std::size_t at = 5; at < whole.size(); at += 1 + whole.size() / 300)
+      for (const char value : {'\x00', '\xff'}) {
+        std::string changed = whole;
+        changed[at] = value;
+        try {
+          read += read_particles(scratch.write("f.hdf5", changed)).empty() ? 0 : 1;
+        } catch (const Error& error) {
+          EXPECT_FALSE(error.detail().path.empty());
+          ++refusals;
+        }
+      }
+  }
+  EXPECT_GT(read, 100);
+  EXPECT_GT(refusals, 50);
+}
+
 TEST(Hdf5, OfGroupsInCirclesIsRead) { expect_small(read_particles(sample("circle.hdf5")), false); }
 
 TEST(Hdf5, IsToldFromItsContentUnderAnyName) {
