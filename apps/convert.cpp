@@ -39,8 +39,8 @@ void convert(const ConvertArguments& arguments) {
   std::size_t written = 0, failed = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const FramePath& frame = sequence.frames[i];
+    std::error_code ignored;
     const auto is_target = [&](const std::string& path) {
-      std::error_code ignored;
       return std::filesystem::equivalent(path, targets[i], ignored);
     };
     if (is_target(frame.path) || std::any_of(frame.further.begin(), frame.further.end(), is_target))
