@@ -77,6 +77,10 @@ FrameSequence listed_there(const std::vector<std::string>& files, FrameSequence 
           !std::all_of(found.frames.begin(), found.frames.end(),
                        [&](const FramePath& frame) { return named.contains(plain(frame.path)); }))
         continue;
+      // What was left out of a series of files may be a part of a frame.
+      const bool joined = std::any_of(listed.frames.begin(), listed.frames.end(),
+                                      [](const FramePath& frame) { return !frame.further.empty(); });
+      if (joined) found.notes = {fmt::format("the parts of frames are those that '{}' lists", file)};
       listed.notes.insert(listed.notes.begin(), found.notes.begin(), found.notes.end());
       return listed;
     } catch (const Error&) {

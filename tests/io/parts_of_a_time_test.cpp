@@ -172,6 +172,8 @@ TEST(ListInADirectory, JoinsTheParts) {
   const FrameSequence sequence = found(scratch.path("d"));
   ASSERT_EQ(sequence.frames.size(), 3u);
   EXPECT_EQ(read_frame(sequence, sequence.frames[2]).x, (std::vector<float>{0, 1}));
+  EXPECT_TRUE(notes_have(sequence, "f.pvd' lists"));
+  EXPECT_FALSE(notes_have(sequence, "left out"));
 }
 
 }  // namespace
