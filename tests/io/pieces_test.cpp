@@ -309,11 +309,22 @@ TEST(FileBytes, FetchesWhatIsAskedFor) {
   file.fetch(first + 200'000, 10);
   EXPECT_TRUE(file.has(first + 200'000, 10));
   EXPECT_FALSE(file.has(first, 1));
+  EXPECT_FALSE(file.has(first + 200'000 - io::kBlockBytes, 10 + io::kBlockBytes));
   EXPECT_EQ(std::string(first + 200'000, 10), bytes.substr(200'000, 10));
   file.fetch(first, bytes.size());
   EXPECT_EQ(std::string(first, bytes.size()), bytes);
   file.fetch(first + bytes.size(), 0);
 }
+
+#ifdef MENISCUS_ADDRESS_SANITIZER
+TEST(FileBytesDeathTest, LetNobodyLookAtWhatWasNotFetched) {
+  const Scratch scratch;
+  io::FileBytes file(scratch.write("f.bin", std::string(10'000, 'a')));
+  file.fetch(file.span().data(), 100);
+  EXPECT_EQ(file.span()[99], 'a');
+  EXPECT_DEATH(std::ofstream("/dev/null").put(file.span()[5000]), "use-after-poison");
+}
+#endif
 
 TEST(FileBytes, KnowsTheSumOfWhatWasReadInPieces) {
   const Scratch scratch;
