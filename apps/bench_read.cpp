@@ -2,13 +2,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <bit>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 
-#include "base/temporary_file.h"
 #include "bench_options.h"
+#include "bench_read_files.h"
 #include "bench_timing.h"
 #include "commands.h"
 #include "meniscus/io.h"
@@ -43,42 +41,6 @@ class BenchFile {
   std::string path_;
 };
 
-/// Positions and velocities as legacy VTK has them: big-endian, interleaved.
-void write_legacy_vtk(const std::string& path, const Particles& particles) {
-  TemporaryStream file(path);
-  const auto text = [&](const std::string& words) { file.write({words.data(), words.size()}); };
-  const auto vectors = [&](auto value_of) {
-    std::vector<char> bytes(12 * particles.size());
-    for (std::size_t i = 0; i < particles.size(); ++i)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t word = __builtin_bswap32(std::bit_cast<std::uint32_t>(value_of(i, c)));
-        std::memcpy(&bytes[12 * i + 4 * c], &word, 4);
-      }
-    file.write(bytes);
-  };
-  text(fmt::format("# vtk DataFile Version 4.1\nwater\nBINARY\nDATASET POLYDATA\nPOINTS {} float\n", particles.size()));
-  vectors([&](std::size_t i, std::size_t c) {
-    return c == 0 ? particles.x[i] : c == 1 ? particles.y[i] : particles.z[i];
-  });
-  text(fmt::format("\nPOINT_DATA {}\nVECTORS velocity float\n", particles.size()));
-  const Attribute* velocity = particles.find("velocity");
-  vectors([&](std::size_t i, std::size_t c) { return velocity->values[3 * i + c]; });
-  text("\n");
-  file.commit();
-}
-
-void write_raw(const std::string& path, const Particles& particles) {
-  TemporaryStream file(path);
-  std::vector<float> values(3 * particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    values[3 * i] = particles.x[i];
-    values[3 * i + 1] = particles.y[i];
-    values[3 * i + 2] = particles.z[i];
-  }
-  file.write({reinterpret_cast<const char*>(values.data()), 4 * values.size()});
-  file.commit();
-}
-
 /// What it takes to fetch the file's bytes into memory that has been written before, by all threads.
 double copy_once(const std::string& path, std::vector<char>& buffer) {
   constexpr std::size_t kPiece = std::size_t{1} << 20;
@@ -106,14 +68,8 @@ Json measure(const ReadArguments& arguments) {
       velocity.values.resize(3 * particles.size());
       for (std::size_t i = 0; i < particles.size(); ++i) velocity.values[3 * i] = particles.y[i];
     }
-    if (arguments.format == "vtk") {
-      write_legacy_vtk(file.path(), particles);
-    } else if (arguments.format == "raw") {
-      write_raw(file.path(), particles);
-      options.raw = "f32x3";
-    } else {
-      write_particles(file.path(), particles);
-    }
+    write_for_bench(arguments.format, file.path(), particles);
+    if (arguments.format == "raw") options.raw = kRawForm;
   }
   const auto bytes = static_cast<std::size_t>(std::filesystem::file_size(file.path()));
   std::vector<double> read_ms, copy_ms;
@@ -156,17 +112,17 @@ void add_bench_read(CLI::App& bench) {
   const auto arguments = std::make_shared<ReadArguments>();
   command
       ->add_option("--format", arguments->format,
-                   "vtk, vtp, ply, npz, bgeo, csv or raw: positions and velocities, raw without these (default: vtp)")
+                   "vtk, vtp, ply, npz, bgeo, hdf5 or csv: positions and velocities; npy or raw: positions (default: "
+                   "vtp)")
       ->type_name("F")
-      ->check(CLI::IsMember({"vtk", "vtp", "ply", "npz", "bgeo", "csv", "raw"}).description(""));
+      ->check(CLI::IsMember({"vtk", "vtp", "ply", "npz", "bgeo", "hdf5", "csv", "npy", "raw"}).description(""));
   add_particles(*command, arguments->particles, 1, 200'000'000, "Particles in the file (default: 10000000)");
   add_repeat(*command, arguments->repeats, "Runs that the median is taken of (default: 5)");
   add_threads(*command, arguments->threads);
   add_json(*command, arguments->json);
   command->footer(
-      "copy_ms is the time in which all threads fetch the file's bytes out of the system's cache into memory; ratio "
-      "is\n"
-      "copy_ms / read_ms.");
+      "copy_ms is the time in which all threads fetch the file's bytes out of the system's cache into memory that was\n"
+      "written before; ratio is copy_ms / read_ms.");
   run_with(*command, arguments, measure, print);
 }
 

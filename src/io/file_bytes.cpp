@@ -9,13 +9,6 @@
 #include <cerrno>
 #include <cstring>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define MENISCUS_ADDRESS_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define MENISCUS_ADDRESS_SANITIZER 1
-#endif
-#endif
 #ifdef MENISCUS_ADDRESS_SANITIZER
 #include <sanitizer/asan_interface.h>
 #endif
@@ -23,10 +16,7 @@
 namespace meniscus::io {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;       ///< bytes that are fetched together
-constexpr std::size_t kReadAtOnce = std::size_t{1} << 22;  ///< bytes that one thread fetches
-constexpr std::size_t kPieceBytes = std::size_t{1}
-                                    << 18;  ///< of a file that one thread converts: they stay in its cache
+constexpr std::size_t kReadAtOnce = std::size_t{1} << 22;    ///< bytes that one thread fetches
 constexpr std::size_t kRowsInMemory = std::size_t{1} << 12;  ///< the same for what is in memory already
 
 [[noreturn]] void system_failure(const std::string& path, std::string problem) {
@@ -98,7 +88,7 @@ Bytes read_file(const std::string& path, std::size_t most) {
 }
 
 FileBytes::FileBytes(const std::string& path)
-    : file_(path), bytes_(file_.size()), fetched_((file_.size() + kBlock - 1) / kBlock) {
+    : file_(path), bytes_(file_.size()), fetched_((file_.size() + kBlockBytes - 1) / kBlockBytes) {
   forbid(bytes_.data(), bytes_.size());
 }
 
@@ -107,20 +97,20 @@ FileBytes::~FileBytes() { allow(bytes_.data(), bytes_.size()); }
 void FileBytes::fetch(const char* first, std::size_t size) {
   if (size == 0 || has(first, size)) return;
   const auto offset = static_cast<std::size_t>(first - bytes_.data());
-  std::size_t begin = offset / kBlock * kBlock;
-  while (fetched_[begin / kBlock]) begin += kBlock;
-  const std::size_t end = std::min(bytes_.size(), (offset + size + kBlock - 1) / kBlock * kBlock);
+  std::size_t begin = offset / kBlockBytes * kBlockBytes;
+  while (fetched_[begin / kBlockBytes]) begin += kBlockBytes;
+  const std::size_t end = std::min(bytes_.size(), (offset + size + kBlockBytes - 1) / kBlockBytes * kBlockBytes);
   allow(bytes_.data() + begin, end - begin);
   parallel_for(end - begin, kReadAtOnce, [&](std::size_t from, std::size_t to) {
     copy(bytes_.data() + begin + from, {bytes_.data() + begin + from, to - from});
   });
-  std::fill(fetched_.begin() + static_cast<std::ptrdiff_t>(begin / kBlock),
-            fetched_.begin() + static_cast<std::ptrdiff_t>((end + kBlock - 1) / kBlock), true);
+  std::fill(fetched_.begin() + static_cast<std::ptrdiff_t>(begin / kBlockBytes),
+            fetched_.begin() + static_cast<std::ptrdiff_t>((end + kBlockBytes - 1) / kBlockBytes), true);
 }
 
 bool FileBytes::has(const char* first, std::size_t size) const {
   const auto offset = static_cast<std::size_t>(first - bytes_.data());
-  for (std::size_t block = offset / kBlock; block * kBlock < offset + size; ++block)
+  for (std::size_t block = offset / kBlockBytes; block * kBlockBytes < offset + size; ++block)
     if (!fetched_[block]) return false;
   return true;
 }

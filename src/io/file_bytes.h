@@ -7,7 +7,25 @@
 
 #include "io/crc32.h"
 
+#if defined(__SANITIZE_ADDRESS__)
+#define MENISCUS_ADDRESS_SANITIZER 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define MENISCUS_ADDRESS_SANITIZER 1
+#endif
+#endif
+
 namespace meniscus::io {
+
+// Where the address sanitizer watches, they are so small that tests and fuzzers see, in small files, what is looked at
+// and was not fetched, and rows on both sides of a piece's end.
+#ifdef MENISCUS_ADDRESS_SANITIZER
+constexpr std::size_t kBlockBytes = 64;
+constexpr std::size_t kPieceBytes = 1024;
+#else
+constexpr std::size_t kBlockBytes = std::size_t{1} << 16;  ///< of a file, that are fetched together
+constexpr std::size_t kPieceBytes = std::size_t{1} << 18;  ///< that one thread converts: they stay in its cache
+#endif
 
 /// An open regular file. It is read, not mapped: a mapped file that shrinks kills the process.
 class OpenFile {

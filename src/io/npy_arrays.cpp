@@ -79,7 +79,7 @@ bool take_frame_value(const NumberArray& array, Particles& particles) {
 }  // namespace
 
 void add_npy(const Source& source, const std::string& name, NpyArrays& to) {
-  source.need(0, kMostNpyHeader);
+  source.need(0, 6);
   if (!source.starts_with("\x93NUMPY")) source.malformed("is no array of NumPy", 0, "\\x93NUMPY");
   const std::optional<NpyHeader> header = npy_header_of(source);
   if (!header) source.malformed("the file ends inside its NumPy header", source.bytes.size());

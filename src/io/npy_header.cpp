@@ -9,6 +9,7 @@ namespace meniscus::io {
 namespace {
 
 constexpr std::size_t kMagic = 8;                            ///< bytes of magic and version
+constexpr std::size_t kMostHeader = std::size_t{1} << 16;    ///< NumPy refuses more than 10,000 itself
 constexpr std::uint64_t kMostItem = std::uint64_t{1} << 30;  ///< bytes an element
 constexpr int kMostDepth = 16;
 
@@ -246,7 +247,7 @@ bool NpyHeader::has_object() const {
 
 std::optional<NpyHeader> npy_header_of(const Source& source) {
   // Magic, version, length of the header in 16 or 32 bits, little-endian.
-  source.need(0, kMagic + sizeof(std::uint32_t) + kMostNpyHeader);
+  source.need(0, kMagic + sizeof(std::uint32_t));
   if (source.bytes.size() < kMagic) return std::nullopt;
   const int version = static_cast<unsigned char>(source.bytes[6]);
   if (version < 1 || version > 3)
@@ -257,12 +258,13 @@ std::optional<NpyHeader> npy_header_of(const Source& source) {
   if (source.bytes.size() < start) return std::nullopt;
   const auto length = static_cast<std::uint64_t>(
       read_value(width == 2 ? Scalar::uint16 : Scalar::uint32, std::endian::little, source.bytes.data() + kMagic));
-  if (length > kMostNpyHeader)
+  if (length > kMostHeader)
     throw Error(
         ErrorCode::limit_exceeded,
-        {"the NumPy header is too long", fmt::format("at most {} bytes", kMostNpyHeader),
-         fmt::format("{} bytes", length), source.path, kMagic, std::nullopt, "save it with numpy.save() again"});
+        {"the NumPy header is too long", fmt::format("at most {} bytes", kMostHeader), fmt::format("{} bytes", length),
+         source.path, kMagic, std::nullopt, "save it with numpy.save() again"});
   if (source.bytes.size() - start < length) return std::nullopt;
+  source.need(start, length);
   const std::size_t end = start + static_cast<std::size_t>(length);
   return HeaderReader(source, end).read(LiteralReader(source, start, end).read());
 }

@@ -6,8 +6,6 @@
 
 namespace meniscus::io {
 
-constexpr std::size_t kMostNpyHeader = std::size_t{1} << 16;  ///< bytes; NumPy refuses more than 10,000 itself
-
 /// A part of an element: the whole of it, or a field of a structured one.
 struct NpyField {
   std::string name;                  ///< empty: the whole element

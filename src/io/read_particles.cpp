@@ -15,7 +15,7 @@ namespace {
 
 using namespace io;
 
-constexpr std::size_t kStart = std::size_t{1} << 16;  ///< bytes that tell a format
+constexpr std::size_t kStart = std::size_t{1} << 12;  ///< bytes that tell a format
 
 Particles read_compressed(const Source& source, const ReadOptions& options) {
   source.need_all();

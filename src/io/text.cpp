@@ -8,6 +8,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "io/file_bytes.h"
+
 namespace meniscus::io {
 namespace {
 
@@ -52,11 +54,10 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 bool TextCursor::fetch(std::size_t at) {
-  constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // bytes
   const std::size_t size = source_.bytes.size();
   if (at >= size) return false;
-  source_.need(at, kAtOnce);
-  ready_ = std::min(size, at + kAtOnce);
+  source_.need(at, kBlockBytes);
+  ready_ = std::min(size, at + kBlockBytes);
   return true;
 }
 

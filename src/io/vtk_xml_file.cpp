@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
+#include "io/file_bytes.h"
 #include "io/text.h"
 
 namespace meniscus::io {
 namespace {
 
 constexpr std::string_view kAppended = "<AppendedData";
-constexpr std::size_t kFirstFetched = std::size_t{1} << 16;  ///< bytes in which the XML before appended data ends
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 std::string_view text_of(const Source& source) { return {source.bytes.data(), source.bytes.size()}; }
@@ -19,7 +19,7 @@ std::string_view text_of(const Source& source) { return {source.bytes.data(), so
 /// @param from  it is found there or behind
 template <class Find>
 std::size_t find_fetching(const Source& source, std::size_t from, Find find) {
-  std::size_t ready = std::max(kFirstFetched, 2 * from);
+  std::size_t ready = std::max(kBlockBytes, 2 * from);
   while (true) {
     source.need(0, ready);
     const std::size_t found = find(text_of(source).substr(0, ready));

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "checks.h"
+#include "io/file_bytes.h"
 #include "io/formats.h"
 #include "io/readers.h"
 
@@ -40,11 +41,14 @@ ReadOptions options_of(std::string_view format, const std::uint8_t* data, std::s
   return options;
 }
 
-Particles read_as(std::string_view name, const std::string& path, std::span<const char> bytes,
-                  const ReadOptions& options) {
+/// Nothing is fetched before: what a reader looks at without having asked for it is an error.
+Particles read_as(std::string_view name, const std::string& path, const MemoryFile& file, const ReadOptions& options) {
+  io::FileBytes bytes(file.path());
+  const io::Source source{path, bytes.span(), &bytes};
   for (const io::Format& format : io::formats())
     if (format.name == name) {
-      Particles particles = format.read(io::Source{path, bytes}, options);
+      if (format.fetching != io::Format::Fetching::reader) source.need_all();
+      Particles particles = format.read(source, options);
       io::finish(options, particles);
       return particles;
     }
@@ -57,13 +61,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const char* const chosen = std::getenv("MENISCUS_FUZZ_FORMAT");
   const std::string format = chosen != nullptr ? chosen : "any";
   try {
+    const MemoryFile file(data, size);
     if (format == "any" || format == "hdf5") {
-      const MemoryFile file(data, size);
       check(read_particles(file.path()));
       io::look_at_frame(file.path(), {});
     } else {
       const std::string path = "frame." + format;
-      check(read_as(format, path, {reinterpret_cast<const char*>(data), size}, options_of(format, data, size)));
+      check(read_as(format, path, file, options_of(format, data, size)));
     }
   } catch (const Error& error) {
     require(!error.detail().path.empty(), "an error that names the file");
