@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <mutex>
 
+#include "io/file_bytes.h"
 #include "io/frame_head.h"
 #include "io/hdf5_layouts.h"
 #include "io/join_pieces.h"
@@ -108,27 +109,40 @@ std::vector<std::size_t> chosen_of(const std::vector<Hdf5Particles>& candidates,
   return chosen;
 }
 
+/// What a copy of this process is asked to go through: two marks, the arrays of positions that are asked for, a zero,
+/// the path.
+std::string trial_of(const std::string& path, bool values, const ReadOptions& options) {
+  std::string request{values ? 'v' : '-', options.boundaries ? 'b' : '-'};
+  std::error_code unknown;  // the copy may stand in another directory
+  const std::string whole = std::filesystem::absolute(path, unknown).string();
+  return request + options.positions + '\0' + (unknown ? path : whole);
+}
+
+void go_through(std::string_view request) {
+  const std::size_t zero = request.find('\0');
+  const std::string path(request.substr(zero + 1));
+  ReadOptions options;
+  options.boundaries = request[1] == 'b';
+  options.positions = request.substr(2, zero - 2);
+  const Hdf5Group file = Hdf5Group::open_file(path);
+  static_cast<void>(time_of(file));
+  std::vector<Hdf5Particles> candidates = particles_in(file, options, path);
+  if (request[0] != 'v') return;
+  const FileBytes bytes(path);  // values that stand in it as they are need no library
+  for (const std::size_t i : chosen_of(candidates, options))
+    for (NumberArray& array : candidates[i].arrays) static_cast<void>(candidates[i].group.load(array, &bytes));
+}
+
 /// Has a copy of this process go through the file first: on some damaged files the library crashes, or does not come to
 /// an end, above all on those of its older form, which has no checksums.
-/// @param bytes   of the same file, for values that are read without the library; null: no values are read
 /// @throws Error  malformed_file
-void try_library(const std::string& path, const FileBytes* bytes, const ReadOptions& options) {
-  constexpr int kSeconds = 20;
-  constexpr std::uintmax_t kBytesASecond = 10'000'000;
+void try_library(const std::string& path, bool values, const ReadOptions& options) {
+  constexpr std::uintmax_t kSeconds = 20, kBytesASecond = 10'000'000, kDay = 86400;
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
-  const int seconds =
-      kSeconds + (unknown ? 0 : static_cast<int>(std::min<std::uintmax_t>(size / kBytesASecond, 86400)));
-  const std::optional<std::string> stopped = what_stops(
-      [&] {
-        const Hdf5Group file = Hdf5Group::open_file(path);
-        static_cast<void>(time_of(file));
-        std::vector<Hdf5Particles> candidates = particles_in(file, options, path);
-        if (bytes == nullptr) return;
-        for (const std::size_t i : chosen_of(candidates, options))
-          for (NumberArray& array : candidates[i].arrays) static_cast<void>(candidates[i].group.load(array, bytes));
-      },
-      seconds);
+  const std::uintmax_t seconds = kSeconds + (unknown ? 0 : std::min(size / kBytesASecond, kDay));
+  const std::optional<std::string> stopped =
+      what_stops(go_through, trial_of(path, values, options), static_cast<int>(seconds));
   if (stopped)
     throw Error(ErrorCode::malformed_file, {"is damaged: the HDF5 library fails on it, " + *stopped,
                                             {},
@@ -146,7 +160,7 @@ void look_at_hdf5(const std::string& path, FrameHead& head) {
   const QuietHdf5 quiet;
   head.format = "hdf5";
   head.particles = head.file_bytes / (3 * sizeof(float));
-  try_library(path, nullptr, {});
+  try_library(path, false, {});
   const Hdf5Group file = Hdf5Group::open_file(path);
   try {
     const std::vector<Hdf5Particles> candidates = particles_in(file, {}, path);
@@ -167,7 +181,7 @@ Particles read_hdf5(const Source& start, const ReadOptions& options) {
   const std::string& path = start.path;
   const std::lock_guard lock(hdf5_mutex());
   const QuietHdf5 quiet;
-  try_library(path, start.file, options);
+  try_library(path, true, options);
   const Hdf5Group file = Hdf5Group::open_file(path);
   std::vector<Hdf5Particles> candidates = particles_in(file, options, path);
   const std::vector<std::size_t> chosen = chosen_of(candidates, options);
