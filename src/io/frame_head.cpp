@@ -125,4 +125,18 @@ FrameHead look_at_frame(const std::string& path, const ReadOptions& options) {
   }
 }
 
+FrameHead look_at_frame(const FramePath& frame, const ReadOptions& options) {
+  FrameHead all = look_at_frame(frame.path, options);
+  for (const std::string& path : frame.further) {
+    const FrameHead part = look_at_frame(path, options);
+    all.file_bytes += part.file_bytes;
+    all.plain_bytes += part.plain_bytes;
+    all.particles += part.particles;
+    all.counted = all.counted && part.counted;
+    all.values = std::max(all.values, part.values);
+    all.text = all.text || part.text;
+  }
+  return all;
+}
+
 }  // namespace meniscus::io

@@ -26,6 +26,8 @@ struct FrameHead {
 
 /// @throws Error  as read_particles(), where the start of the file is enough to see it
 FrameHead look_at_frame(const std::string& path, const ReadOptions& options = {});
+/// Of all files that hold the frame.
+FrameHead look_at_frame(const FramePath& frame, const ReadOptions& options = {});
 
 // One a format, from the first bytes; `file_bytes` are those of the whole file after decompression.
 void look_at_bgeo(const Source& start, FrameHead& head);

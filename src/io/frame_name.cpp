@@ -26,7 +26,7 @@ std::string_view without_zeros(std::string_view digits) {
 }
 
 // Dense binary formats of particles first, then those that also hold meshes, then text.
-constexpr std::array<std::pair<std::string_view, int>, 16> kExtensions{{{".bgeo", 0},
+constexpr std::array<std::pair<std::string_view, int>, 17> kExtensions{{{".bgeo", 0},
                                                                         {".vtk", 1},
                                                                         {".vtu", 1},
                                                                         {".vtp", 1},
@@ -38,6 +38,7 @@ constexpr std::array<std::pair<std::string_view, int>, 16> kExtensions{{{".bgeo"
                                                                         {".pdb", 3},
                                                                         {".bin", 3},
                                                                         {".geo", 4},
+                                                                        {".npz", 4},
                                                                         {".xyz", 4},
                                                                         {".csv", 5},
                                                                         {".txt", 6},

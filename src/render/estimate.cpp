@@ -43,10 +43,17 @@ std::uint64_t file_size(const std::string& path) {
   return error ? 0 : size;
 }
 
+/// Of all files of a frame.
+std::uint64_t file_size(const FramePath& frame) {
+  std::uint64_t size = file_size(frame.path);
+  for (const std::string& path : frame.further) size += file_size(path);
+  return size;
+}
+
 Frames frames_in_files(const FrameSequence& sequence) {
   Frames frames;
   std::vector<std::uint64_t> sizes;
-  for (const FramePath& frame : sequence.frames) sizes.push_back(file_size(frame.path));
+  for (const FramePath& frame : sequence.frames) sizes.push_back(file_size(frame));
   const auto biggest = static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   const std::size_t count = sizes.size(), looked_at = std::min(count, kMostHeads);
   std::vector<std::size_t> places{biggest};
@@ -59,7 +66,7 @@ Frames frames_in_files(const FrameSequence& sequence) {
   std::size_t failed = 0, understood = 0;
   for (const std::size_t place : places) {
     try {
-      const io::FrameHead head = io::look_at_frame(sequence.frames[place].path, sequence.reading);
+      const io::FrameHead head = io::look_at_frame(sequence.frames[place], sequence.reading);
       ++understood;
       particles += static_cast<double>(head.particles);
       bytes += static_cast<double>(head.file_bytes);
@@ -223,7 +230,7 @@ void check_memory(const FrameSequence& sequence, const PictureOptions& picture, 
   if (limit == 0) return;
   if (!sequence.source && !sequence.foreseen)
     for (const FramePath& frame : sequence.frames)
-      if (const std::uint64_t size = file_size(frame.path); size > limit)
+      if (const std::uint64_t size = file_size(frame); size > limit)
         throw Error(ErrorCode::limit_exceeded, {"the frame's file is larger than the memory that may be used",
                                                 fmt::format("no more than the limit of {}", size_text(limit)),
                                                 size_text(size),

@@ -76,5 +76,16 @@ TEST(FrameHead, RefusesCountsThatTheFileIsTooShortFor) {
   EXPECT_EQ(look_at_frame(scratch.write("empty.xyz", "")).particles, 0u);
 }
 
+TEST(FrameHead, CountsAllFilesOfAFrame) {
+  const Scratch scratch;
+  const std::string first = scratch.write("f_0.xyz", "0 0 0\n1 1 1\n"), second = scratch.write("f_1.xyz", "2 2 2\n");
+  FramePath frame{first};
+  EXPECT_EQ(look_at_frame(frame).particles, look_at_frame(first).particles);
+  frame.further = {second};
+  const FrameHead head = look_at_frame(frame);
+  EXPECT_EQ(head.particles, look_at_frame(first).particles + look_at_frame(second).particles);
+  EXPECT_EQ(head.file_bytes, 18u);
+}
+
 }  // namespace
 }  // namespace meniscus
