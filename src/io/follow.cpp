@@ -17,6 +17,24 @@ double FrameFollower::now() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+namespace {
+
+std::vector<std::string> files_of(const FramePath& frame) {
+  std::vector<std::string> paths = frame.further;
+  paths.push_back(frame.path);
+  return paths;
+}
+
+/// What a frame is told from others by: its files and its time.
+std::string key_of(const FramePath& frame) {
+  std::string key = frame.path;
+  for (const std::string& part : frame.further) key += '\n' + part;
+  if (frame.time) key += fmt::format("\n{}", *frame.time);
+  return key;
+}
+
+}  // namespace
+
 bool FrameFollower::settled(const std::string& path) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
@@ -47,15 +65,15 @@ std::optional<FrameSequence> FrameFollower::look() {
   for (std::size_t i = 0; i < found.frames.size(); ++i) found.frames[i].place = i;
   // Frames are given in order: one that is not whole yet keeps back those behind it.
   const auto first_open = std::find_if(found.frames.begin(), found.frames.end(), [&](const FramePath& frame) {
-    if (given_.contains(frame.path)) return false;
-    bool whole = settled(frame.path);
-    for (const std::string& part : frame.further) whole = settled(part) && whole;
+    if (given_.contains(key_of(frame))) return false;
+    bool whole = true;
+    for (const std::string& path : files_of(frame)) whole = settled(path) && whole;
     return !whole;
   });
   found.frames.erase(first_open, found.frames.end());
-  std::erase_if(found.frames, [&](const FramePath& frame) { return given_.contains(frame.path); });
+  std::erase_if(found.frames, [&](const FramePath& frame) { return given_.contains(key_of(frame)); });
   if (found.frames.empty()) return std::nullopt;
-  for (const FramePath& frame : found.frames) given_.insert(frame.path);
+  for (const FramePath& frame : found.frames) given_.insert(key_of(frame));
   return found;
 }
 
@@ -80,14 +98,22 @@ std::vector<FramePath> FrameFollower::further() {
 }
 
 bool FrameFollower::wait_for_change(const FramePath& frame) {
-  settled(frame.path);
-  const Seen before = seen_[frame.path];
+  const std::vector<std::string> paths = files_of(frame);
+  std::vector<Seen> before;
+  for (const std::string& path : paths) {
+    settled(path);
+    before.push_back(seen_[path]);
+  }
   const double start = now();
   while (!stopped() && now() - start < options_.patience) {
     std::this_thread::sleep_for(std::chrono::duration<double>(options_.poll));
-    const bool whole = settled(frame.path);
-    const Seen& seen = seen_[frame.path];
-    if (whole && (seen.bytes != before.bytes || seen.changed != before.changed)) return true;
+    bool whole = true, changed = false;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      whole = settled(paths[i]) && whole;
+      const Seen& seen = seen_[paths[i]];
+      changed = changed || seen.bytes != before[i].bytes || seen.changed != before[i].changed;
+    }
+    if (whole && changed) return true;
   }
   return false;
 }

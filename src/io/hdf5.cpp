@@ -126,11 +126,16 @@ void go_through(std::string_view request) {
   options.positions = request.substr(2, zero - 2);
   const Hdf5Group file = Hdf5Group::open_file(path);
   static_cast<void>(time_of(file));
+  Particles notes;
+  note_other_files(file, notes);
   std::vector<Hdf5Particles> candidates = particles_in(file, options, path);
   if (request[0] != 'v') return;
   const FileBytes bytes(path);  // values that stand in it as they are need no library
   for (const std::size_t i : chosen_of(candidates, options))
-    for (NumberArray& array : candidates[i].arrays) static_cast<void>(candidates[i].group.load(array, &bytes));
+    for (NumberArray& array : candidates[i].arrays) try {
+        static_cast<void>(candidates[i].group.load(array, &bytes));
+      } catch (const Error&) {  // of one that holds no numbers, which is left out, or is met again
+      }
 }
 
 /// Has a copy of this process go through the file first: on some damaged files the library crashes, or does not come to

@@ -205,16 +205,19 @@ namespace {
 std::vector<std::vector<const Entry*>> frames_of(const std::vector<Entry>& entries,
                                                  const std::set<std::string>& water) {
   std::vector<std::vector<const Entry*>> frames;
-  std::map<double, std::size_t> last_at;  // the last frame of each time
+  struct Last {
+    std::size_t frame = 0;
+    std::set<std::string> parts;  // that it has
+  };
+  std::map<double, Last> last_at;  // of each time
   for (const Entry& entry : entries) {
     if (!water.empty() && !water.contains(entry.part)) continue;
     const auto last = water.size() > 1 && entry.time ? last_at.find(*entry.time) : last_at.end();
-    const auto is_same = [&](const Entry* other) { return other->part == entry.part; };
-    if (last != last_at.end() && std::none_of(frames[last->second].begin(), frames[last->second].end(), is_same)) {
-      frames[last->second].push_back(&entry);
+    if (last != last_at.end() && last->second.parts.insert(entry.part).second) {
+      frames[last->second.frame].push_back(&entry);
       continue;
     }
-    if (entry.time) last_at[*entry.time] = frames.size();
+    if (entry.time) last_at[*entry.time] = {frames.size(), {entry.part}};
     frames.push_back({&entry});
   }
   return frames;

@@ -3,6 +3,7 @@
 #if defined(__linux__)
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -49,6 +50,7 @@ bool receive_all(int socket, void* bytes, std::size_t size) {
 }
 
 [[noreturn]] void do_work(const Call& call, const std::string& request) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   const auto seconds = static_cast<rlim_t>(call.seconds);
   const rlimit no_core{0, 0}, time{seconds, seconds};
   setrlimit(RLIMIT_CORE, &no_core);
@@ -91,15 +93,17 @@ class Server {
   std::optional<int> call(Work work, std::string_view request, int seconds) {
     const std::lock_guard lock(mutex_);
     for (int attempt = 0; attempt < 2; ++attempt) {
+      // A copy of this process by others may not ask over the same socket.
+      if (socket_ >= 0 && owner_ != getpid()) forget();
       if (socket_ < 0 && !begin()) return std::nullopt;
       const Call call{work, seconds, request.size()};
       int status = 0;
       if (send_all(socket_, &call, sizeof(call)) && send_all(socket_, request.data(), request.size()) &&
           receive_all(socket_, &status, sizeof(status)))
         return status;
-      close(socket_);
-      socket_ = -1;
-      waitpid(process_, nullptr, 0);
+      forget();
+      while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+      }
     }
     return std::nullopt;
   }
@@ -108,23 +112,32 @@ class Server {
   bool begin() {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return false;
-    process_ = fork();
+    // Not in the places of standard streams, where those are closed.
+    for (int& end : ends) {
+      const int placed = fcntl(end, F_DUPFD_CLOEXEC, 3);
+      close(end);
+      end = placed;
+    }
+    process_ = ends[0] < 0 || ends[1] < 0 ? -1 : fork();
     if (process_ == 0) {
       close(ends[0]);
       serve(ends[1]);
     }
-    close(ends[1]);
-    if (process_ > 0) {
-      socket_ = ends[0];
-      return true;
-    }
-    close(ends[0]);
-    return false;
+    if (ends[1] >= 0) close(ends[1]);
+    socket_ = ends[0];
+    owner_ = getpid();
+    if (process_ < 0 && socket_ >= 0) forget();
+    return process_ > 0;
+  }
+
+  void forget() {
+    close(socket_);
+    socket_ = -1;
   }
 
   std::mutex mutex_;
   int socket_ = -1;
-  pid_t process_ = -1;
+  pid_t process_ = -1, owner_ = -1;
 };
 
 }  // namespace

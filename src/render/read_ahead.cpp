@@ -8,7 +8,7 @@ ReadAhead::~ReadAhead() {
 
 void ReadAhead::begin(const FramePath& frame) {
   if (sequence_.source || thread_count() < 2 || begun_.valid()) return;
-  path_ = frame.path;
+  frame_ = frame;
   begun_ = std::async(std::launch::async, [this, frame]() -> std::shared_ptr<const Particles> {
     return std::make_shared<Particles>(read_frame(sequence_, frame));
   });
@@ -16,7 +16,7 @@ void ReadAhead::begin(const FramePath& frame) {
 
 std::shared_ptr<const Particles> ReadAhead::take(const FramePath& frame) {
   if (begun_.valid()) {
-    if (path_ == frame.path) return begun_.get();
+    if (frame_.path == frame.path && frame_.further == frame.further) return begun_.get();
     try {
       begun_.get();
     } catch (const Error&) {  // of a frame that nobody asked for

@@ -24,7 +24,7 @@ class ReadAhead {
 
  private:
   const FrameSequence& sequence_;
-  std::string path_;  ///< of what was begun
+  FramePath frame_;  ///< that was begun
   std::future<std::shared_ptr<const Particles>> begun_;
 };
 

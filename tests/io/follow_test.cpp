@@ -98,5 +98,34 @@ TEST(FrameFollower, WaitsForADamagedFileToChange) {
   expect_small(read_particles(frame.path));
 }
 
+TEST(FrameFollower, GivesFramesThatShareAFileAndWaitsForAllOfTheirs) {
+  const Scratch scratch;
+  std::string list = "<VTKFile type=\"Collection\"><Collection>";
+  for (int time = 0; time < 2; ++time) {
+    scratch.write("water_m_" + std::to_string(time) + ".xyz", "1 0 0\n");
+    const std::string at = "<DataSet timestep=\"" + std::to_string(time) + "\" group=\"g\" part=\"";
+    list += at + "0\" file=\"water_static.xyz\"/>" + at + "1\" file=\"water_m_" + std::to_string(time) + ".xyz\"/>";
+  }
+  scratch.write("water_static.xyz", "0 0 0\n");
+  const std::string path = scratch.write("a.pvd", list + "</Collection></VTKFile>");
+  sleep(2 * kSettle);
+  FrameFollower follower({path}, {}, quick());
+  scratch.write("water_m_1.xyz", "1 0 0\n2 0 0\n");  // begins to settle once more
+  const FrameSequence first = follower.first();
+  ASSERT_EQ(first.frames.size(), 1u);
+  ASSERT_EQ(first.frames[0].further.size(), 1u);
+  const std::vector<FramePath> more = follower.further();
+  ASSERT_EQ(more.size(), 1u);
+  EXPECT_EQ(more[0].path, first.frames[0].path);
+  EXPECT_NE(more[0].further, first.frames[0].further);
+
+  std::thread writer([&] {
+    sleep(0.1);
+    scratch.write("water_m_1.xyz", "1 0 0\n2 0 0\n3 0 0\n");
+  });
+  EXPECT_TRUE(follower.wait_for_change(more[0]));
+  writer.join();
+}
+
 }  // namespace
 }  // namespace meniscus

@@ -148,6 +148,12 @@ TEST(Hdf5, OfChangedBytesIsReadOrRefused) {
   EXPECT_GT(refusals, 50);
 }
 
+TEST(Hdf5, ThatCrashesTheLibraryBehindAnArrayOfTextsIsRefused) {
+  const Error error = refused(sample("damaged.hdf5"));
+  EXPECT_EQ(error.code(), ErrorCode::malformed_file);
+  EXPECT_NE(error.detail().problem.find("damaged"), std::string::npos) << error.what();
+}
+
 TEST(Hdf5, OfGroupsInCirclesIsRead) { expect_small(read_particles(sample("circle.hdf5")), false); }
 
 TEST(Hdf5, IsToldFromItsContentUnderAnyName) {

@@ -39,7 +39,9 @@ TEST(RealFlow, ReadsEveryVersion) {
     EXPECT_EQ(particles.time, 0.25);
     EXPECT_EQ(particles.find("id")->values[6], 60.0f) << version;
     EXPECT_EQ(particles.find("temperature")->values[6], 300.0f) << version;
-    if (version >= 4) EXPECT_EQ(particles.find("neighbors")->values[6], 7.0f) << version;
+    if (version >= 4) {
+      EXPECT_EQ(particles.find("neighbors")->values[6], 7.0f) << version;
+    }
   }
   expect_small(read_particles(scratch.write("c_00006.bin.gz", gzipped(small_realflow(11)))));
 }
