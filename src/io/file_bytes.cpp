@@ -2,12 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 
 #ifdef MENISCUS_ADDRESS_SANITIZER
 #include <sanitizer/asan_interface.h>
@@ -87,6 +89,18 @@ Bytes read_file(const std::string& path, std::size_t most) {
   return bytes;
 }
 
+FileRoom::FileRoom(std::size_t size) : memory_(new (std::nothrow) char[size]), data_(memory_.get()), size_(size) {
+  if (data_ != nullptr) return;
+  void* const addresses =
+      ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (addresses == MAP_FAILED) throw std::bad_alloc();
+  data_ = static_cast<char*>(addresses);
+}
+
+FileRoom::~FileRoom() {
+  if (!memory_) ::munmap(data_, size_);
+}
+
 FileBytes::FileBytes(const std::string& path)
     : file_(path), bytes_(file_.size()), fetched_((file_.size() + kBlockBytes - 1) / kBlockBytes) {
   forbid(bytes_.data(), bytes_.size());
@@ -96,6 +110,8 @@ FileBytes::~FileBytes() { allow(bytes_.data(), bytes_.size()); }
 
 void FileBytes::fetch(const char* first, std::size_t size) {
   if (size == 0 || has(first, size)) return;
+  constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+  if (!bytes_.is_memory() && size > kMostAtOnce) throw std::bad_alloc();
   const auto offset = static_cast<std::size_t>(first - bytes_.data());
   std::size_t begin = offset / kBlockBytes * kBlockBytes;
   while (fetched_[begin / kBlockBytes]) begin += kBlockBytes;

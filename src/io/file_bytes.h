@@ -48,6 +48,25 @@ class OpenFile {
   std::size_t size_ = 0;
 };
 
+/// Addresses for as many bytes as a file has. Where there is not that much memory they are addresses alone: what is
+/// written to takes memory then.
+class FileRoom {
+ public:
+  /// @throws std::bad_alloc
+  explicit FileRoom(std::size_t size);
+  ~FileRoom();
+  FileRoom(const FileRoom&) = delete;
+  FileRoom& operator=(const FileRoom&) = delete;
+  char* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  bool is_memory() const { return memory_ != nullptr; }
+
+ private:
+  std::unique_ptr<char[]> memory_;
+  char* data_ = nullptr;
+  std::size_t size_;
+};
+
 /// Room for all bytes of a file, of which those that are fetched are read. What is not touched takes no memory.
 /// Where the address sanitizer watches, looking at what has not been fetched is an error.
 class FileBytes {
@@ -58,11 +77,12 @@ class FileBytes {
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
 
-  std::span<const char> span() const { return bytes_.span(); }
+  std::span<const char> span() const { return {bytes_.data(), bytes_.size()}; }
   Source source() { return {file_.path(), span(), this}; }
   /// Reads a part of span() on all threads, with what stands around it, unless it is there. Not by several threads at
   /// once, nor while others look at what has().
   /// @throws Error  io_failed; malformed_file: the file has become shorter since it was opened
+  /// @throws std::bad_alloc  far too much for a file that does not fit into memory
   void fetch(const char* first, std::size_t size);
   /// Whether all of a part of span() has been fetched.
   bool has(const char* first, std::size_t size) const;
@@ -78,7 +98,7 @@ class FileBytes {
 
  private:
   OpenFile file_;
-  Bytes bytes_;
+  FileRoom bytes_;
   std::vector<bool> fetched_;        ///< one a block
   std::unique_ptr<PieceSums> sums_;  ///< null: not kept
 };

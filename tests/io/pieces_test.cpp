@@ -326,6 +326,23 @@ TEST(FileBytesDeathTest, LetNobodyLookAtWhatWasNotFetched) {
 }
 #endif
 
+TEST(FileBytes, OfAFileLargerThanMemoryAreFetchedInParts) {
+#ifdef MENISCUS_ADDRESS_SANITIZER
+  GTEST_SKIP() << "which stops the program where memory is refused";
+#endif
+  const Scratch scratch;
+  const std::string path = scratch.write("f.hdf5", bytes_of_file(sample("tiny.hdf5")));
+  std::error_code error;
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 41, error);
+  if (error) GTEST_SKIP() << "no such files here: " << error.message();
+  expect_small(read_particles(path), false);
+  io::FileBytes bytes(path);
+  EXPECT_FALSE(bytes.has(bytes.span().data(), 8));
+  bytes.fetch(bytes.span().data(), 8);
+  EXPECT_EQ(bytes.span()[1], 'H');
+  EXPECT_THROW(bytes.fetch(bytes.span().data(), bytes.span().size()), std::bad_alloc);
+}
+
 TEST(FileBytes, KnowsTheSumOfWhatWasReadInPieces) {
   const Scratch scratch;
   std::string bytes(1'000'000, '\0');
