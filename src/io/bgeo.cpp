@@ -32,6 +32,9 @@ struct Header {
   std::vector<PointAttribute> attributes;
   std::uint64_t first_point = 0;  ///< byte offset of the first point
   std::uint64_t stride = 0;       ///< bytes a point: x, y, z, w and the attributes
+  bool has_others = false;        ///< vertices, primitives or the whole have attributes
+
+  std::uint64_t end() const { return first_point + points * stride; }
 };
 
 /// A position in the header that knows when the bytes are not enough.
@@ -82,7 +85,7 @@ std::optional<Header> header_of(const Source& source) {
   header.primitives = cursor.number_32();
   cursor.skip(2 * kWord);  // numbers of groups
   const std::uint32_t attribute_count = cursor.number_32();
-  cursor.skip(3 * kWord);  // numbers of other attributes
+  for (int i = 0; i < 3; ++i) header.has_others |= cursor.number_32() > 0;
 
   if (attribute_count > kMostAttributes)
     source.malformed("has an impossible number of point attributes", 25, fmt::format("at most {}", kMostAttributes),
@@ -122,8 +125,20 @@ std::optional<Header> header_of(const Source& source) {
   return header;
 }
 
+/// Throws if a further point follows: four numbers of which the last is 1. Nothing else that may follow where only
+/// points have attributes begins like this.
+void check_end(const Source& source, const Header& header) {
+  const std::uint64_t end = header.end();
+  if (header.has_others || source.bytes.size() - end < std::max<std::uint64_t>(header.stride, 4 * kWord)) return;
+  source.need(end, 4 * kWord);
+  const char* fourth = source.bytes.data() + end + 3 * kWord;
+  if (read_value(Scalar::float32, std::endian::big, fourth) != 1) return;
+  source.malformed("there are more points than its header says", end, fmt::format("{} points", header.points));
+}
+
 Particles points_of(const Source& source, const Header& header, const ReadOptions& options) {
   source.require(header.first_point, header.points, header.stride, "points");
+  check_end(source, header);
   const auto count = static_cast<std::size_t>(header.points);
   const auto stride = static_cast<std::size_t>(header.stride);
   const Stored first = source.stored(static_cast<std::size_t>(header.first_point));
@@ -179,7 +194,7 @@ Particles read_bgeo(const std::string& path, Gunzip& stream, const ReadOptions& 
     size = 2 * stream.bytes().size();
   }
   if (!header) short_header(Source{path, stream.bytes()});
-  stream.grow_to(header->first_point + header->points * header->stride);
+  stream.grow_to(header->end() + header->stride);  // and a further one, if there is one
   const Source source{path, stream.bytes()};
   source.require(header->first_point, header->points, header->stride, "points");
   stream.check_rest();

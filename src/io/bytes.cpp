@@ -32,6 +32,12 @@ void Source::require(std::uint64_t offset, std::uint64_t count, std::uint64_t it
             fmt::format("{} bytes", left));
 }
 
+void Source::require_end(std::uint64_t offset, std::string_view what) const {
+  if (offset == bytes.size()) return;
+  malformed(fmt::format("there is more behind its {} than its header says", what), offset, "the end",
+            fmt::format("{} bytes", bytes.size() - offset));
+}
+
 void Source::need(std::uint64_t offset, std::uint64_t size) const {
   if (file == nullptr || offset >= bytes.size()) return;
   const auto first = static_cast<std::size_t>(offset);

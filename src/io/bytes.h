@@ -60,6 +60,9 @@ struct Source {
   /// Throws malformed_file unless `count` items of at least `item_size` bytes can stand from `offset` to the end.
   /// @param what  "positions": what the items are, for the message
   void require(std::uint64_t offset, std::uint64_t count, std::uint64_t item_size, std::string_view what) const;
+  /// Throws malformed_file unless what is read ends at `offset`, which is not behind the end, with the file.
+  /// @param what  "values": what ends there, for the message
+  void require_end(std::uint64_t offset, std::string_view what) const;
   bool starts_with(std::string_view magic) const;
 };
 

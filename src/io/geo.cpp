@@ -50,6 +50,13 @@ class GeoCursor {
     if (!parse_number(found, value)) fail(what, "a number", found);
     return value;
   }
+  /// Throws if the next word is a number.
+  void expect_no_number(std::string_view what) {
+    skip_blanks();
+    double value = 0;
+    if (at_ == source_.bytes.size()) return;
+    if (const std::string_view found = word(what); parse_number(found, value)) fail(what, "the end of them", found);
+  }
   /// A word, or a text between quotes.
   std::string text(std::string_view what) {
     skip_blanks();
@@ -92,8 +99,8 @@ struct GeoHeader {
   std::uint64_t values = 0;  ///< of all attributes of a point
   std::uint64_t first_point = 0;
 
-  /// Bytes that a point takes at least: "0 0 0 1" and its values, between brackets.
-  std::uint64_t least_bytes() const { return 8 + 2 * values + (values > 0 ? 2 : 0); }
+  /// Bytes that a point takes at least: "0 0 0 1" and a blank, or "0 0 0 1(0 0)" with its values.
+  std::uint64_t least_bytes() const { return 8 + 2 * values; }
 };
 
 GeoAttribute attribute_at(GeoCursor& text) {
@@ -183,6 +190,7 @@ Particles read_geo(const Source& source, const ReadOptions& options) {
     }
     text.expect(")", "points");
   }
+  text.expect_no_number("points");  // of a further point
   set_positions(positions, options, particles);
   note_primitives(header.primitives, particles);
   return particles;

@@ -90,8 +90,10 @@ std::vector<bool> HoudiniValueReader::flags_of() {
   const HoudiniWord first = json_.next();
   if (first.kind == Kind::run) {
     for (std::uint64_t i = 0; i < first.run.count; ++i)
-      flags.push_back(first.run.form == NumberRun::Form::bits ? bit_of(first.run, json_.order(), i)
-                                                              : first.run.first[i * size_of(first.run.type)] != 0);
+      flags.push_back(first.run.form == NumberRun::Form::bits
+                          ? bit_of(first.run, json_.order(), i)
+                          : read_value(first.run.type, json_.order(), first.run.first + i * size_of(first.run.type)) !=
+                                0);
     return flags;
   }
   if (first.kind != Kind::begin) json_.malformed("marks of constant pages are missing", first.at, "a list");
@@ -143,7 +145,8 @@ HoudiniValueReader::Block HoudiniValueReader::block_of() {
   return block;
 }
 
-HoudiniValueReader::Flat HoudiniValueReader::flat_of(const HoudiniJson::Place& place, std::uint64_t most) {
+HoudiniValueReader::Flat HoudiniValueReader::flat_of(const HoudiniJson::Place& place, std::uint64_t most,
+                                                     std::uint64_t inner) {
   const HoudiniJson::Place back = json_.place();
   json_.seek(place);
   const HoudiniWord first = json_.next();
@@ -163,7 +166,7 @@ HoudiniValueReader::Flat HoudiniValueReader::flat_of(const HoudiniJson::Place& p
       flat.first = flat.owned.data();
     }
   } else if (first.kind == Kind::begin) {
-    flat = flat_of_list(most);
+    flat = flat_of_list(most, inner);
   } else {
     json_.malformed("numbers are missing", first.at, "a list of numbers");
   }
@@ -171,17 +174,26 @@ HoudiniValueReader::Flat HoudiniValueReader::flat_of(const HoudiniJson::Place& p
   return flat;
 }
 
-/// The numbers of a list that has begun, and of lists in it.
-HoudiniValueReader::Flat HoudiniValueReader::flat_of_list(std::uint64_t most) {
+/// The numbers of a list that has begun, and of lists in it, which have `inner` each; 0: any number.
+HoudiniValueReader::Flat HoudiniValueReader::flat_of_list(std::uint64_t most, std::uint64_t inner) {
   Flat flat;
+  std::size_t begin = 0;  // number of the first in the inner list
+  const auto check_inner = [&](bool fits, std::size_t at) {
+    if (inner > 0 && !fits) json_.malformed("a list has another length than the others", at, fmt::format("{}", inner));
+  };
+  const auto is_aligned = [&] { return inner > 0 && flat.parsed.size() % inner == 0; };
   for (std::size_t depth = 1; depth > 0;) {
     const HoudiniWord word = json_.next();
     if (word.kind == Kind::begin) {
       ++depth;
+      begin = flat.parsed.size();
+      check_inner(is_aligned(), word.at);
     } else if (word.kind == Kind::end) {
+      check_inner(depth == 1 || flat.parsed.size() - begin == inner, word.at);
       --depth;
     } else if (word.kind == Kind::run && word.run.form == NumberRun::Form::plain) {
       if (word.run.count > most - flat.parsed.size()) json_.malformed("there are too many numbers", word.at);
+      check_inner(word.run.count == inner && is_aligned(), word.at);
       for (std::uint64_t i = 0; i < word.run.count; ++i)
         flat.parsed.push_back(read_value(word.run.type, json_.order(), word.run.first + i * size_of(word.run.type)));
     } else if (word.kind == Kind::number || word.kind == Kind::truth) {
@@ -269,7 +281,8 @@ HoudiniValues HoudiniValueReader::read(const std::string& name) {
   const std::uint64_t wanted = count_ * block.size;  // below 2^61: what is counted is below 2^53
   const bool pages = block.form == Block::Form::pages, constant = pages && block.has_constant_pages();
   if (pages) check_pages(block, name);
-  Flat flat = flat_of(block.place, wanted);
+  const bool by_component = block.form == Block::Form::arrays;
+  Flat flat = flat_of(block.place, wanted, pages ? 0 : by_component ? count_ : block.size);
   // Nothing is allocated for what is not there, but for constant pages, which have been checked.
   if (!constant && flat.count != wanted)
     json_.malformed(fmt::format("attribute '{:.60}' has another number of values than its elements ask for", name),
@@ -280,7 +293,6 @@ HoudiniValues HoudiniValueReader::read(const std::string& name) {
     values = row_by_row(block, flat, name);
   } else {
     const std::size_t value = size_of(flat.type);
-    const bool by_component = block.form == Block::Form::arrays;
     values.array.stride = value * static_cast<std::size_t>(by_component ? 1 : block.size);
     values.array.step = value * static_cast<std::size_t>(by_component ? count_ : 1);
     values.array.first = flat.first;

@@ -35,8 +35,8 @@ class HoudiniValueReader {
   Block block_of();
   std::vector<bool> flags_of();
   std::vector<std::uint64_t> packing_of();
-  Flat flat_of(const HoudiniJson::Place& place, std::uint64_t most);
-  Flat flat_of_list(std::uint64_t most);
+  Flat flat_of(const HoudiniJson::Place& place, std::uint64_t most, std::uint64_t inner = 0);
+  Flat flat_of_list(std::uint64_t most, std::uint64_t inner);
   void check_pages(const Block& block, const std::string& name);
   HoudiniValues row_by_row(const Block& block, const Flat& flat, const std::string& name) const;
 

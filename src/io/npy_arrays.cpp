@@ -88,6 +88,7 @@ void add_npy(const Source& source, const std::string& name, NpyArrays& to) {
     return;
   }
   source.require(header->first, header->items, header->item_size, "values");
+  source.require_end(header->first + header->items * header->item_size, "values");
   const bool has_half =
       std::any_of(header->fields.begin(), header->fields.end(), [](const NpyField& field) { return field.half; });
   // Single values and what is widened are looked at where they are.

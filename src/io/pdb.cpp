@@ -63,18 +63,19 @@ bool add_channel(const Source& source, const Layout& layout, std::uint64_t count
   const std::uint32_t type = word_at(source, data), bytes = word_at(source, data + 4);
   if (count > 0 && bytes > (size - data - layout.data) / count) return false;
   channels.problem = "a channel is damaged";
-  if (word_at(source, channel + layout.type) != type || bytes % sizeof(float) != 0) return false;
+  const bool is_whole = !scalar_of(type) || bytes % sizeof(float) == 0;
+  if (word_at(source, channel + layout.type) != type || !is_whole) return false;
 
   NumberArray array;
   array.name.assign(first, end);
   array.type = scalar_of(type);
   array.type_name = array.type ? std::string(name_of(*array.type)) : fmt::format("{} of Maya", type);
   array.order = order_of(source);
-  array.shape = {count, bytes / sizeof(float)};
+  array.shape = {count};
+  if (array.type && bytes != sizeof(float)) array.shape.push_back(bytes / sizeof(float));
   array.first = source.bytes.data() + data + layout.data;
   array.stride = bytes;
   array.step = sizeof(float);
-  if (array.shape[1] == 1) array.shape.pop_back();
   channels.arrays.push_back(std::move(array));
   channels.at = data + layout.data + static_cast<std::size_t>(count * bytes);
   return true;
@@ -85,7 +86,9 @@ Channels channels_of(const Source& source, const Layout& layout, std::uint64_t c
   channels.at = layout.header;
   for (std::uint64_t i = 0; i < wanted; ++i)
     if (!add_channel(source, layout, count, channels)) return channels;
-  channels.fit = channels.at <= source.bytes.size();
+  channels.fit = channels.at == source.bytes.size();
+  channels.problem = channels.at < source.bytes.size() ? "there is more behind its channels than its header says"
+                                                       : "the file ends inside its header";
   return channels;
 }
 
@@ -126,8 +129,7 @@ Particles read_pdb(const Source& source, const ReadOptions& options) {
     Channels wide = channels_of(source, kLong, count, wanted);
     if (wide.fit || wide.arrays.size() > channels.arrays.size()) channels = std::move(wide);
   }
-  if (!channels.fit)
-    source.malformed(channels.problem.empty() ? "the file ends inside its header" : channels.problem, channels.at);
+  if (!channels.fit) source.malformed(channels.problem, channels.at);
   Particles particles;
   particles.format = "pdb";
   if (wanted == 0 && count == 0) return particles;

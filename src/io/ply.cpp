@@ -37,12 +37,34 @@ class PlyReader {
         continue;
       }
       read_vertices(element);
+      if (&element == last_with_rows()) check_end();
       return std::move(particles_);
     }
     source_.malformed("has no element 'vertex'", header_.end, "element vertex");
   }
 
  private:
+  /// The vertices, or an element behind them that has rows.
+  const PlyElement* last_with_rows() const {
+    const PlyElement* last = nullptr;
+    for (const PlyElement& element : header_.elements)
+      if (element.name == "vertex" ? last == nullptr || last->name != "vertex"
+                                   : element.count > 0 && !element.properties.empty())
+        last = &element;
+    return last;
+  }
+
+  /// Throws if more than blanks follow what was read, in binary files more than one line end.
+  void check_end() {
+    constexpr std::size_t kLineEnd = 2;
+    const std::size_t end = position();
+    const std::size_t rest = source_.bytes.size() - end;
+    source_.need(end, kLineEnd);
+    const auto left = source_.bytes.subspan(end, header_.ascii ? rest : std::min(rest, kLineEnd));
+    if ((header_.ascii || rest <= kLineEnd) && std::all_of(left.begin(), left.end(), is_blank)) return;
+    source_.require_end(end, "vertices");
+  }
+
   void skip(const PlyElement& element) {
     if (element.properties.empty()) return;
     need_lists(element);
@@ -93,6 +115,7 @@ class PlyReader {
       read_one_by_one(vertex, axes);
     } else {
       read_blocks(vertex, axes);
+      at_ += vertex.count * vertex.row_size();
     }
     join_colour(vertex);
   }

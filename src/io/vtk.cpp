@@ -87,6 +87,7 @@ class VtkReader {
     arrays_.begin();
     arrays_.read_points(type, count, options_, particles_);
     has_points_ = true;
+    points_end_ = text_.at();
   }
 
   /// "CELLS cells integers" and that many 32-bit integers; since version 5 "CELLS offsets connections" and two
@@ -228,13 +229,17 @@ class VtkReader {
     return true;
   }
 
-  /// Behind the points an unknown word ends the reading with a note; before them it is an error.
+  /// Behind the points an unknown word ends the reading with a note; before them it is an error, and so is, next to
+  /// them, what is no word: numbers of further points.
   bool stop_at_unknown(const std::string& word, std::size_t start) {
     std::string shown = word.substr(0, 24);
     for (char& c : shown) {
       if (c < ' ' || c > '~') c = '?';
     }
     if (!has_points_) source_.malformed("has an unknown keyword", start, "POINTS", "'" + shown + "'");
+    const auto is_of_word = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
+    if (start == points_end_ && !std::all_of(word.begin(), word.end(), is_of_word))
+      source_.malformed("has more points than it says", start, "a keyword or the end", "'" + shown + "'");
     particles_.notes.push_back(fmt::format("reading stopped at byte {}, at the unknown word '{}'", start, shown));
     return false;
   }
@@ -245,6 +250,7 @@ class VtkReader {
   VtkArrays arrays_;
   Particles particles_;
   bool has_points_ = false;
+  std::size_t points_end_ = 0;  ///< byte offset
   Part part_ = Part::dataset;
   std::uint64_t tuples_ = 0;
 };

@@ -40,6 +40,20 @@ void read_points(const VtkXmlFile& file, const XmlElement& piece, std::uint64_t 
                 static_cast<std::size_t>(count), options, particles);
 }
 
+/// Throws if the points of a piece that says it has none have bytes. An array that names no place is none.
+void check_no_points(const VtkXmlFile& file, const XmlElement& piece, VtkXmlArrays& arrays) {
+  const XmlElement* points = piece.child("Points");
+  const XmlElement* array = points != nullptr ? points->child("DataArray") : nullptr;
+  if (array == nullptr || !arrays.type_of(*array)) return;
+  std::uint64_t offset = 0;
+  const bool appended = lower(array->value("format")) == "appended";
+  const Source text{file.source.path, file.source.bytes.first(array->text_end)};
+  const bool is_there =
+      appended ? parse_count(array->value("offset"), offset) && offset < file.appended_end - file.appended_begin
+               : !TextCursor(text, array->text_begin).peek().empty();
+  if (is_there) arrays.read(*array, 0, 3);
+}
+
 void read_attributes(const VtkXmlFile& file, const XmlElement& data, std::uint64_t count, VtkXmlArrays& arrays,
                      Particles& particles) {
   if (data.children.size() > kMostArrays)
@@ -115,6 +129,12 @@ Particles read_set(const VtkXmlFile& file, const XmlElement& set, const ReadOpti
   const std::vector<const XmlElement*> pieces = pieces_of(file, set);
   if (pieces.empty()) file.source.malformed("has no piece", set.at, "<Piece NumberOfPoints=...>");
   VtkXmlArrays arrays(file);
+  // Of an empty piece among others some writers leave the places unset.
+  const bool is_empty = std::all_of(pieces.begin(), pieces.end(), [&](const XmlElement* piece) {
+    return xml_count(file.source, *piece, "NumberOfPoints") == 0;
+  });
+  if (is_empty)
+    for (const XmlElement* piece : pieces) check_no_points(file, *piece, arrays);
   Particles particles = join_pieces(pieces.size(), options, [&](std::size_t i, const ReadOptions& reading) {
     Particles piece;
     const std::uint64_t count = xml_count(file.source, *pieces[i], "NumberOfPoints");

@@ -26,6 +26,13 @@ constexpr std::array<std::pair<std::string_view, Scalar>, 10> kTypes{{{"Float32"
 constexpr std::uint64_t kMostComponents = 65536;
 constexpr std::string_view kZlib = "vtkZLibDataCompressor";
 
+/// The numbers in attributes `offset` of an element and of all below it.
+void add_offsets(const XmlElement& element, std::vector<std::uint64_t>& offsets) {
+  std::uint64_t offset = 0;
+  if (parse_count(element.value("offset"), offset)) offsets.push_back(offset);
+  for (const XmlElement& child : element.children) add_offsets(child, offsets);
+}
+
 std::string shown_name(const XmlElement& array) { return fmt::format("array '{:.40}'", array.value("Name")); }
 
 }  // namespace
@@ -52,6 +59,7 @@ class VtkXmlArrays::Stream {
     malformed("ends early", fmt::format("{} bytes", count),
               fmt::format("{} bytes", base64_ && count <= there ? decoded_.size : there));
   }
+  std::size_t begin() const { return begin_; }
   /// Whether bytes lie in the file itself.
   bool in_file() const { return !base64_; }
   Bytes take() { return std::move(decoded_.bytes); }
@@ -158,13 +166,22 @@ VtkXmlArray VtkXmlArrays::read_text(const XmlElement& array, Scalar type, std::u
   return result;
 }
 
-VtkXmlArray VtkXmlArrays::read_plain(Stream& stream, std::uint64_t bytes) const {
+bool VtkXmlArrays::begins_at(std::uint64_t offset) {
+  if (offsets_.empty()) {
+    add_offsets(file_.root, offsets_);
+    std::sort(offsets_.begin(), offsets_.end());
+  }
+  return std::binary_search(offsets_.begin(), offsets_.end(), offset);
+}
+
+VtkXmlArray VtkXmlArrays::read_plain(Stream& stream, std::uint64_t bytes) {
   const std::uint64_t size = size_of(file_.header);
   const std::uint64_t length = word(stream.first(size));
   // Lengths of 32 bits wrap around in files of some writers.
   const std::uint64_t most = size == 4 ? 0xffffffffu : ~std::uint64_t{0};
-  // GPUSPH splits vectors of four into x, y, z and w, and gives both the length of the whole.
-  const bool fourfold = stream.in_file() && length == (4 * bytes & most);
+  // GPUSPH splits vectors of four and gives the parts four times their length; the next array begins where it should.
+  const bool fourfold = stream.in_file() && length == (4 * bytes & most) &&
+                        begins_at(stream.begin() - file_.appended_begin + size + bytes);
   if (length != (bytes & most) && !fourfold)
     stream.malformed("has another length than its count asks for", fmt::format("{} bytes", bytes),
                      fmt::format("{} bytes", length));

@@ -49,10 +49,13 @@ class VtkXmlArrays {
  private:
   VtkXmlArray read_text(const XmlElement& array, Scalar type, std::uint64_t values) const;
   class Stream;
-  VtkXmlArray read_plain(Stream& stream, std::uint64_t bytes) const;
+  VtkXmlArray read_plain(Stream& stream, std::uint64_t bytes);
   VtkXmlArray read_compressed(Stream& stream, std::uint64_t bytes) const;
   std::uint64_t word(const char* first) const;
+  /// Whether an array begins at an offset in the appended data.
+  bool begins_at(std::uint64_t offset);
   const VtkXmlFile& file_;
+  std::vector<std::uint64_t> offsets_;  ///< of all arrays, in order, once they are asked for
   std::uint64_t made_ = 0;  ///< bytes of binary arrays so far; a piece may be read twice
 };
 

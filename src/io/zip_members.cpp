@@ -162,12 +162,14 @@ std::vector<ZipMember> zip_members(const Source& source) {
 
 std::vector<UnpackedMember> unpack(const Source& source, std::span<const ZipMember> members) {
   std::uint64_t all = 0;
-  for (const ZipMember& member : members) all += member.size;
-  if (all > believable_size(source.bytes.size()))
+  const std::uint64_t most = believable_size(source.bytes.size());
+  for (const ZipMember& member : members)
+    if (all <= most) all += member.size;  // a member is at most 1032 times the file: no overflow
+  if (all > most)
     throw Error(ErrorCode::limit_exceeded,
                 {"its members are larger than what particles would be when unpacked",
-                 fmt::format("at most {} bytes", believable_size(source.bytes.size())), fmt::format("{} bytes", all),
-                 source.path, std::nullopt, std::nullopt, "unpack the archive first if it is sound"});
+                 fmt::format("at most {} bytes", most), fmt::format("{} bytes or more", all), source.path, std::nullopt,
+                 std::nullopt, "unpack the archive first if it is sound"});
   for (const ZipMember& member : members)
     if (member.deflated) source.need(member.first, member.packed_size);
   std::vector<UnpackedMember> unpacked(members.size());

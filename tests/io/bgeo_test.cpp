@@ -41,6 +41,16 @@ TEST(Bgeo, IgnoresWhatStandsBehindThePoints) {
   expect_small(read_particles(scratch.write("f.bgeo", small_bgeo() + std::string(1000, '\x7f'))));
 }
 
+TEST(Bgeo, OfFewerPointsThanThereAreIsMalformed) {
+  const Scratch scratch;
+  for (const char count : {'\0', '\3'}) {
+    std::string bytes = small_bgeo();
+    bytes[12] = count;
+    for (const std::string& file : {bytes, gzipped(bytes)})
+      EXPECT_EQ(refused(scratch.write("f.bgeo", file)).code(), ErrorCode::malformed_file);
+  }
+}
+
 TEST(Bgeo, OfNoPointsIsAnEmptyFrame) {
   const Scratch scratch;
   for (const std::string& bytes : {small_bgeo(0), gzipped(small_bgeo(0))}) {

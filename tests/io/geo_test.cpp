@@ -47,6 +47,21 @@ TEST(Geo, NeedsNoAttributesAndNoPoints) {
   EXPECT_TRUE(read_particles(scratch.write("f.geo", small_geo(0))).empty());
 }
 
+TEST(Geo, NeedsNoBlanksAtBrackets) {
+  const Scratch scratch;
+  const std::string bytes =
+      "PGEOMETRY V5\nNPoints 3 NPrims 0\nNPointGroups 0 NPrimGroups 0\nNPointAttrib 1 NVertexAttrib 0 NPrimAttrib 0 "
+      "NAttrib 0\nPointAttrib\nv 2 float 0 0\n0 0 0 1(0 0)1 0 0 1(0 0)0 1 0 1(0 0)";
+  EXPECT_EQ(read_particles(scratch.write("f.geo", bytes)).size(), 3u);
+}
+
+TEST(GeoDamaged, FewerPointsThanThereAreAreRefused) {
+  const Scratch scratch;
+  for (const char* count : {"NPoints 0", "NPoints 6"})
+    EXPECT_EQ(refused(scratch.write("f.geo", replaced(small_geo(), "NPoints 7", count))).code(),
+              ErrorCode::malformed_file);
+}
+
 TEST(Geo, TellsItsPointsFromItsStart) {
   const Scratch scratch;
   const io::FrameHead head = io::look_at_frame(scratch.write("f.geo", small_geo()));

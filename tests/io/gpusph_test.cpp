@@ -91,6 +91,22 @@ TEST(Gpusph, FluidIsKeptAndTheRestIsNoted) {
   EXPECT_EQ(refused(scratch.write("f.vtp", gpusph_frame(3))).code(), ErrorCode::malformed_file);
 }
 
+TEST(Gpusph, FourfoldLengthsCountOnlyWhereTheNextArrayBegins) {
+  const auto frame_of = [](int count) {
+    return fmt::format(
+               "<VTKFile type='PolyData' byte_order='LittleEndian'><PolyData><Piece NumberOfPoints='{}'><Points>"
+               "<DataArray type='Float32' NumberOfComponents='3' format='appended' offset='0'/></Points></Piece>"
+               "</PolyData><AppendedData encoding='raw'>_",
+               count) +
+           ByteWriter(std::endian::little).put<std::uint32_t>(240).bytes() + std::string(240, '\0') +
+           "</AppendedData></VTKFile>";
+  };
+  const Scratch scratch;
+  EXPECT_EQ(read_particles(scratch.write("f.vtp", frame_of(20))).size(), 20u);
+  for (const int count : {0, 3, 5})
+    EXPECT_EQ(refused(scratch.write("f.vtp", frame_of(count))).code(), ErrorCode::malformed_file) << count;
+}
+
 TEST(Gpusph, TakesTheParticlesAmongTheBlocksOfAList) {
   const Scratch scratch;
   scratch.write("PLANES.vtu", kPlanes);

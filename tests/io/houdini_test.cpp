@@ -141,6 +141,40 @@ TEST(Houdini, CompressedByBloscIsRefusedWithAdvice) {
   EXPECT_NE(error.detail().advice.find("gconvert"), std::string::npos);
 }
 
+TEST(HoudiniDamaged, UnevenTuplesAreRefused) {
+  const Scratch scratch;
+  const auto tuples = [&](const char* text) {
+    return scratch.write("f.geo", with_positions(HoudiniForm::text, 5, [&](HoudiniWriter& out) {
+                           out.word("size").whole(3).word("tuples").bytes(text);
+                         }));
+  };
+  EXPECT_EQ(read_particles(tuples(",[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,1]]")).size(), 5u);
+  for (const char* uneven : {",[[0,0],[0,1,0,0],[0,1,0,0,0,1,1,1,1]]", ",[0,[0,0,1],0,0,[0,1,0],0,0,0,1,1,1,1]"})
+    EXPECT_EQ(refused(tuples(uneven)).code(), ErrorCode::malformed_file);
+  for (const HoudiniForm form : {HoudiniForm::little, HoudiniForm::big}) {
+    const std::string bytes = with_positions(form, 2, [](HoudiniWriter& out) {
+      out.word("size").whole(3).word("tuples").begin().run(std::vector<float>{1, 2});
+      out.run(std::vector<float>{3, 4, 5, 6}).end();
+    });
+    EXPECT_EQ(refused(scratch.write("f.bgeo", bytes)).code(), ErrorCode::malformed_file);
+  }
+}
+
+TEST(Houdini, TakesMarksOfPagesOf32Bits) {
+  const Scratch scratch;
+  for (const HoudiniForm form : kHoudiniForms) {
+    const std::string bytes = with_positions(form, 3, [](HoudiniWriter& out) {
+      out.word("size").whole(3).word("packing").begin().whole(3).end().word("pagesize").whole(2);
+      out.word("constantpageflags").begin().run(std::vector<std::int32_t>{1, 0}).end();
+      out.word("rawpagedata").run(std::vector<float>{1, 2, 3, 7, 8, 9});
+    });
+    const Particles particles = read_particles(scratch.write(houdini_name(form), bytes));
+    ASSERT_EQ(particles.size(), 3u);
+    EXPECT_EQ(particles.position(1), vec3(1, 2, 3));
+    EXPECT_EQ(particles.position(2), vec3(7, 8, 9));
+  }
+}
+
 TEST(HoudiniDamaged, EveryPrefixIsRefused) {
   for (const HoudiniForm form : kHoudiniForms) {
     const std::string bytes = small_houdini(form);

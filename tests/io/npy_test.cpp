@@ -68,21 +68,33 @@ TEST(Npy, WithoutParticlesIsAnEmptyFrame) {
   EXPECT_TRUE(read_particles(scratch.write("g.npy", npy_of("'<f4'", "(0L, 3L)", 0))).empty());
 }
 
+TEST(Npy, OfFewerRowsThanTheFileHoldsIsMalformed) {
+  const Scratch scratch;
+  for (const char* shape : {"(4, 3)", "(0, 3)"}) {
+    const Error error = refused(scratch.write("f.npy", npy_of("'<f4'", shape, 60)));
+    EXPECT_EQ(error.code(), ErrorCode::malformed_file);
+    EXPECT_TRUE(error.detail().byte_offset.has_value());
+  }
+}
+
 TEST(Npy, OfOtherShapesOrTypesSaysWhatItFound) {
   const Scratch scratch;
-  for (const auto& [descr, shape] :
-       std::vector<std::pair<std::string, std::string>>{{"'<f4'", "(7, 2)"},
-                                                        {"'<f4'", "(21,)"},
-                                                        {"'<f4'", "(7, 3, 1)"},
-                                                        {"'<f4'", "()"},
-                                                        {"'<c8'", "(7, 3)"},
-                                                        {"'<U3'", "(7, 3)"},
-                                                        {"'|V4'", "(7, 3)"},
-                                                        {"'<f16'", "(7, 3)"},
-                                                        {"[('a', '<f4')]", "(7,)"},
-                                                        {"[('x', '<f4', (2, 2))]", "(7,)"},
-                                                        {"[('p', [('x', '<f4')], (3,))]", "(7,)"}}) {
-    const Error error = refused(scratch.write("f.npy", npy_of(descr, shape, 1000)));
+  struct Case {
+    std::string descr, shape;
+    std::size_t bytes;
+  };
+  for (const auto& [descr, shape, bytes] : std::vector<Case>{{"'<f4'", "(7, 2)", 56},
+                                                             {"'<f4'", "(21,)", 84},
+                                                             {"'<f4'", "(7, 3, 1)", 84},
+                                                             {"'<f4'", "()", 4},
+                                                             {"'<c8'", "(7, 3)", 168},
+                                                             {"'<U3'", "(7, 3)", 252},
+                                                             {"'|V4'", "(7, 3)", 84},
+                                                             {"'<f16'", "(7, 3)", 336},
+                                                             {"[('a', '<f4')]", "(7,)", 28},
+                                                             {"[('x', '<f4', (2, 2))]", "(7,)", 112},
+                                                             {"[('p', [('x', '<f4')], (3,))]", "(7,)", 84}}) {
+    const Error error = refused(scratch.write("f.npy", npy_of(descr, shape, bytes)));
     EXPECT_EQ(error.code(), ErrorCode::unsupported) << descr << shape;
     EXPECT_FALSE(error.detail().found.empty());
   }

@@ -103,9 +103,28 @@ TEST(PdbDamaged, EveryChangedByteIsReadOrRefused) {
       check_changed_bytes("f.pdb", small_pdb(wide, order));
 }
 
-TEST(PdbDamaged, BytesBehindTheEndAreNotRead) {
+TEST(Pdb, LeavesOutCharactersOfAByteEachWithANote) {
   const Scratch scratch;
-  expect_small(read_particles(scratch.write("f.pdb", small_pdb(false) + std::string(1000, '\x7f'))));
+  PdbWriter file(false, std::endian::little, 5, 2);
+  file.channel("position", 1, 12).text(std::string(60, '\0'));
+  file.channel("tag", 0, 1).text("abcde");
+  const Particles particles = read_particles(scratch.write("f.pdb", file.result()));
+  EXPECT_EQ(particles.size(), 5u);
+  ASSERT_EQ(particles.notes.size(), 1u);
+  EXPECT_NE(particles.notes[0].find("'tag'"), std::string::npos);
+}
+
+TEST(PdbDamaged, BytesBehindTheEndAreRefused) {
+  const Scratch scratch;
+  for (const bool wide : {false, true}) {
+    const std::string good = small_pdb(wide);
+    EXPECT_EQ(refused(scratch.write("f.pdb", good + "xxxx")).code(), ErrorCode::malformed_file);
+    for (const char count : {'\0', '\3'}) {
+      std::string bytes = good;
+      bytes[16] = count;
+      EXPECT_EQ(refused(scratch.write("f.pdb", bytes)).code(), ErrorCode::malformed_file);
+    }
+  }
 }
 
 TEST(PdbDamaged, ExtremesAreRefusedWhereTheyMatter) {

@@ -101,5 +101,22 @@ TEST(Ply, LeavesOutVerticesThatAreNotFinite) {
   EXPECT_EQ(particles.find("id")->values, (std::vector<float>{0, 2}));
 }
 
+TEST(PlyDamaged, FewerVerticesThanThereAreAreRefused) {
+  const Scratch scratch;
+  const auto ply = [&](const char* form, int count, const std::string& rows) {
+    return scratch.write("f.ply", std::string("ply\nformat ") + form + " 1.0\nelement vertex " + std::to_string(count) +
+                                      "\nproperty float x\nproperty float y\nproperty float z\nelement face 0\n"
+                                      "property list uchar int vertex_indices\nend_header\n" +
+                                      rows);
+  };
+  const std::string text = "0 0 0\n1 0 0\n0 1 0\n", binary(36, '\0');
+  EXPECT_EQ(read_particles(ply("ascii", 3, text + "\n \n")).size(), 3u);
+  EXPECT_EQ(read_particles(ply("binary_little_endian", 3, binary + "\n")).size(), 3u);
+  for (const int count : {0, 2}) {
+    EXPECT_EQ(refused(ply("ascii", count, text)).code(), ErrorCode::malformed_file);
+    EXPECT_EQ(refused(ply("binary_little_endian", count, binary)).code(), ErrorCode::malformed_file);
+  }
+}
+
 }  // namespace
 }  // namespace meniscus

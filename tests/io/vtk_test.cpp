@@ -131,6 +131,19 @@ TEST(Vtk, StopsWithANoteAtUnknownWordsBehindThePoints) {
   EXPECT_EQ(refused(scratch.write("f.vtk", head + "NOVELTY 7\n")).code(), ErrorCode::malformed_file);
 }
 
+TEST(Vtk, OfFewerPointsThanThereAreIsMalformed) {
+  const Scratch scratch;
+  for (const char* count : {"0", "1"}) {
+    const std::string points = std::string("\nDATASET POLYDATA\nPOINTS ") + count + " float\n";
+    const std::string head = "# vtk DataFile Version 3.0\nt\n";
+    ByteWriter out;
+    for (const float value : {1.f, 2.f, 3.f, 4.f, 5.f, 6.f}) out.put(value);
+    for (const std::string& bytes :
+         {head + "ASCII" + points + "1 2 3\n4 5 6\n", head + "BINARY" + points + out.bytes()})
+      EXPECT_EQ(refused(scratch.write("f.vtk", bytes)).code(), ErrorCode::malformed_file) << count;
+  }
+}
+
 TEST(Vtk, OfOtherDataSetsAndXmlIsUnsupported) {
   const Scratch scratch;
   const std::string head = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET ";
