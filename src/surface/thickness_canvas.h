@@ -31,9 +31,7 @@ void add_points(const SplatCamera& camera, const float* x, const float* y, const
 void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas);
 
 /// The same for a box along the axes of the world.
-/// @param edge  m, 0 or more: its sides fall off over so much, where rays run nearly along some of them; at least over
-/// a
-///              sample's width then
+/// @param edge  m, 0 or more: where rays run nearly along some sides these fall off over so much, at least a sample
 void add_box(const SplatCamera& camera, const SplatBox& box, float weight, float edge, ThicknessCanvas& canvas);
 
 }  // namespace meniscus
