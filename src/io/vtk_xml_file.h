@@ -56,7 +56,7 @@ class VtkXmlArrays {
   bool begins_at(std::uint64_t offset);
   const VtkXmlFile& file_;
   std::vector<std::uint64_t> offsets_;  ///< of all arrays, in order, once they are asked for
-  std::uint64_t made_ = 0;  ///< bytes of binary arrays so far; a piece may be read twice
+  std::uint64_t made_ = 0;              ///< bytes of binary arrays so far; a piece may be read twice
 };
 
 /// An attribute of an element that is a count.
