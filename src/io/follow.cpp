@@ -27,9 +27,9 @@ std::vector<std::string> files_of(const FramePath& frame) {
 
 /// What a frame is told from others by: its files and its time.
 std::string key_of(const FramePath& frame) {
-  std::string key = frame.path;
-  for (const std::string& part : frame.further) key += '\n' + part;
-  if (frame.time) key += fmt::format("\n{}", *frame.time);
+  std::string key;
+  for (const std::string& path : files_of(frame)) key += path + '\n';
+  if (frame.time) key += fmt::format("{}", *frame.time);
   return key;
 }
 
