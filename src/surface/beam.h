@@ -1,5 +1,5 @@
-/// Rays that run close together: they share what is gathered from the grid, then each has a short list of its own,
-/// of the particles within reach of the stretch that it looks at. Compiled once for each instruction set.
+/// Rays that run close together: they share what is gathered from the grid, then fours of them have short lists of
+/// their own, of the particles within reach of the stretches that they look at. Compiled once for each instruction set.
 #pragma once
 
 #include "surface/packet.h"
@@ -9,23 +9,9 @@ namespace meniscus {
 constexpr int kBeam = 64;        ///< rays at most
 using BeamMask = std::uint64_t;  ///< bit i: ray i
 
-/// The particles near a stretch of one ray, by what is left of them along it: the one at distance r of the place t has
-///   s(t) = 1 - r^2 / h^2 = core - (t / h - place)^2
-/// with `place` where along the ray it is nearest, in units of h, from the start of the stretch. Filled up with
-/// particles of no mass to a whole number of vectors.
-struct RayList {
-  AlignedFloats place, core, mass;
-  AlignedFloats per_h;  ///< 1/m, if field.has_sizes()
-  std::size_t count = 0;
-  void reserve(std::size_t wanted, bool sizes);
-};
-
 /// Room that a thread keeps from beam to beam.
 struct BeamLists {
-  static constexpr int kRays = 8;    ///< that are looked at in turn, so that none waits for what it has just written
-  static constexpr int kLevels = 3;  ///< the whole beam's, a quarter's, a sixteenth's
-  PacketList near[kLevels];
-  RayList ray[kRays];
+  PacketList whole, part, four[4];  ///< near all of a beam's rays, near sixteen, near four
 };
 
 /// `count` rays; beyond them the packets that they fill in part hold copies. Rays that follow each other should run

@@ -20,6 +20,21 @@ namespace meniscus {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// Row of cells along x by row of a block: y and z.
+struct RowPlaces {
+  alignas(64) float y[BandGrid::kSide * BandGrid::kSide];
+  alignas(64) float z[BandGrid::kSide * BandGrid::kSide];
+};
+constexpr RowPlaces make_row_places() {
+  RowPlaces places{};
+  for (int row = 0; row < BandGrid::kSide * BandGrid::kSide; ++row) {
+    places.y[row] = static_cast<float>(row % BandGrid::kSide);
+    places.z[row] = static_cast<float>(row / BandGrid::kSide);
+  }
+  return places;
+}
+constexpr RowPlaces kRowPlaces = make_row_places();
+
 /// Calls visit(begin, end) for the runs of kept particles whose cells may touch the capsule: of each row of cells along
 /// x those beside the part of its axis that comes near the row. Rows of a block are looked at many at once.
 template <class Visit>
@@ -54,9 +69,7 @@ HWY_INLINE void for_each_run_along(const BandGrid& grid, const Capsule& capsule,
         if (block < 0) continue;
         const vec3 origin = from - static_cast<float>(kSide) * vec3(bx, by, bz);  // the axis' start, from the block
         for (int row = 0; row < kSide * kSide; row += lanes) {
-          const auto index = hn::Iota(di, row);
-          const Vec y = hn::ConvertTo(d, hn::And(index, hn::Set(di, kSide - 1))),
-                    z = hn::ConvertTo(d, hn::ShiftRight<3>(index));
+          const Vec y = hn::Load(d, kRowPlaces.y + row), z = hn::Load(d, kRowPlaces.z + row);
           // The part s of the axis nearest to the middle of the row, seen along x, and what comes within reach.
           const Vec off_y = hn::Sub(y, hn::Set(d, origin.y - 0.5f)), off_z = hn::Sub(z, hn::Set(d, origin.z - 0.5f));
           const Vec foot = hn::Mul(hn::MulAdd(off_y, rise_y, hn::Mul(off_z, rise_z)), hn::Set(d, per_across2));
@@ -114,11 +127,16 @@ HWY_INLINE bool near_full(const BandGrid& grid, const Capsule& capsule, float re
   return grid.touches_full(glm::min(capsule.from, capsule.to) - apart, glm::max(capsule.from, capsule.to) + apart);
 }
 
-/// Whole vectors are read; what is beyond the end lies far away.
-HWY_INLINE void end_list(PacketList& list) {
+/// Whole vectors are read: what is beyond the end lies far away and has no mass.
+HWY_INLINE void end_list(PacketList& list, bool sizes) {
   const Tag d;
   list.reserve(list.count + 2 * kPacket, false);
   hn::StoreU(hn::Set(d, 1e18f), d, list.x.data() + list.count);
+  for (const AlignedFloats* values : {&list.y, &list.z, &list.mass})
+    hn::StoreU(hn::Zero(d), d, values->data() + list.count);
+  if (!sizes) return;
+  list.per_smoothing.reserve(list.count + 2 * kPacket, list.count);
+  hn::StoreU(hn::Set(d, 1.0f), d, list.per_smoothing.data() + list.count);
 }
 
 /// Fills the list with the particles in the capsule.
@@ -126,8 +144,9 @@ HWY_INLINE void end_list(PacketList& list) {
 HWY_NOINLINE void gather_capsule(const RaycastField& field, const Capsule& capsule, float reach, PacketList& list) {
   if (HWY_UNLIKELY(field.has_sizes())) {
     const float apart = capsule.radius - reach;
-    return gather_sizes(field, glm::min(capsule.from, capsule.to) - apart, glm::max(capsule.from, capsule.to) + apart,
-                        reach, false, list);
+    gather_sizes(field, glm::min(capsule.from, capsule.to) - apart, glm::max(capsule.from, capsule.to) + apart, reach,
+                 false, list);
+    return end_list(list, true);
   }
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
@@ -137,7 +156,6 @@ HWY_NOINLINE void gather_capsule(const RaycastField& field, const Capsule& capsu
   list.count = 0;
   list.near_full = near_full(grid, capsule, reach);
   const auto take = [&](std::size_t begin, std::size_t end) {
-    list.reserve(list.count + (end - begin) + 2 * kPacket, false);
     for (std::size_t i = begin; i < end; i += lanes) {
       const Vec x = hn::LoadU(d, grid.x() + i), y = hn::LoadU(d, grid.y() + i), z = hn::LoadU(d, grid.z() + i);
       // Lanes past the run's end belong to other cells, which may be part of the box and come again.
@@ -157,18 +175,24 @@ HWY_NOINLINE void gather_capsule(const RaycastField& field, const Capsule& capsu
   constexpr int kAtOnce = 64;
   BandGrid::Run runs[kAtOnce];
   int count = 0;
+  std::size_t particles = 0;
   const auto take_all = [&] {
+    list.reserve(list.count + particles + 2 * kPacket, false);
     for (int r = 0; r < count; ++r) take(runs[r].begin, runs[r].end);
     count = 0;
+    particles = 0;
   };
   for_each_run_along(grid, capsule, [&](std::size_t begin, std::size_t end) {
-    for (const float* values : {grid.x(), grid.y(), grid.z(), field.mass.data()})
-      for (std::size_t i = begin; i < end + kPacket; i += kPacket) __builtin_prefetch(values + std::min(i, end - 1));
+    for (const float* values : {grid.x(), grid.y(), grid.z(), field.mass.data()}) {
+      __builtin_prefetch(values + begin);
+      __builtin_prefetch(values + end - 1);
+    }
     runs[count++] = {begin, end};
+    particles += end - begin;
     if (count == kAtOnce) take_all();
   });
   take_all();
-  end_list(list);
+  end_list(list, false);
 }
 
 /// Fills a list with those of another that lie in the capsule, in the same order.
@@ -204,7 +228,7 @@ HWY_NOINLINE void narrow_list(const RaycastField& field, const PacketList& all, 
     if constexpr (kSizes) keep(hn::Load(d, all.per_smoothing.data() + j), list.per_smoothing);
     list.count += hn::CountTrue(d, near);
   }
-  end_list(list);
+  end_list(list, kSizes);
 }
 
 }  // namespace

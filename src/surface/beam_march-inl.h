@@ -26,15 +26,15 @@ class BeamMarch {
         beam_(beam),
         sign_(from_inside ? -1.0f : 1.0f),
         step_(field.step),
-        per_h_(1.0f / field.options.smoothing_length),
         samples_(field.step <= kLongestSweep * field.options.spacing ? kRaySamples : 1) {}
 
   void run() {
+    for (int i = 0; i < kBeam; ++i) {
+      at_[i] = i < beam_.count ? beam_.entry[i] : 0.0f;
+      sample_[i] = before_[i] = earlier_[i] = 0;
+    }
     for (int i = 0; i < beam_.count; ++i) {
       beam_.depth[i] = std::numeric_limits<float>::infinity();
-      at_[i] = beam_.entry[i];
-      sample_[i] = 0;
-      before_[i] = earlier_[i] = 0;
       if (beam_.entry[i] <= beam_.exit[i]) active_ |= BeamMask{1} << i;
     }
     const float ahead = ahead_of_sweep();
@@ -44,37 +44,42 @@ class BeamMarch {
       BeamMask group = take_group(beam_, at_, left);
       const float last = largest_of(group, at_) + ahead + beyond;
       gather(group, first_of(group), last);
+      group = leapt(group, last);
       // Where nothing is near, farther is looked next time.
-      beyond = lists_.near[0].count == 0 ? std::min(4.0f * beyond, kMostSteps * step_) : kMoreSteps * step_;
-      do {
-        look_from(group, lists_.near[0], 0, 0);
-        group &= active_;
-        BeamMask reached = 0;
-        for_each_vector(group, [&](int i, auto of) {
-          const Tag d;
-          const auto within = hn::Le(hn::Add(hn::LoadU(d, at_ + i), hn::Set(d, ahead)), hn::Set(d, last));
-          reached |= BeamMask{bits_of(hn::And(of, within))} << i;
-        });
-        group = reached;
-      } while (group != 0);
+      beyond = group == 0 ? std::min(4.0f * beyond, kMostSteps * step_) : kMoreSteps * step_;
+      while (group != 0) {
+        for_each_part(group, [&](int first, PacketMask rays) { look(first, rays); });
+        group = leapt(group, last);
+      }
     }
     start_inside();
   }
 
  private:
   static constexpr float kLongestSweep = 0.67f;  ///< spacings a step, beyond which samples share too few particles
-  static constexpr int kRays = BeamLists::kRays;
-  static constexpr float kNearRoot = 0.04f;     ///< spacings
-  static constexpr float kMoreSteps = 4.0f;     ///< gathered beyond the next samples
-  static constexpr float kMostSteps = 64.0f;    ///< the same where nothing has been near
-  static constexpr std::size_t kFewNear = 160;  ///< particles, of which every ray makes its own list at once
-  static constexpr int kWorthNarrowing = 3;     ///< rays
+  static constexpr float kNearRoot = 0.04f;      ///< spacings
+  static constexpr float kMoreSteps = 4.0f;      ///< gathered beyond the next samples
+  static constexpr float kMostSteps = 64.0f;     ///< the same where nothing has been near
+  static constexpr std::size_t kFewOfPart = 160, kFewOfFour = 64;  ///< particles that need not be narrowed
+  static constexpr int kFours = kPacket / kFour;
+
+  /// Calls visit(first, rays) for the sixteens of rays that hold some of the mask.
+  template <class Visit>
+  static HWY_INLINE void for_each_part(BeamMask mask, Visit visit) {
+    for (int first = 0; first < kBeam; first += kPacket)
+      if (const auto rays = static_cast<PacketMask>(mask >> first & 0xffffu); rays != 0) visit(first, rays);
+  }
+  /// Calls visit(four, rays) for the fours of a part that hold some of the mask.
+  template <class Visit>
+  static HWY_INLINE void for_each_four(PacketMask mask, Visit visit) {
+    for (int four = 0; four < kFours; ++four)
+      if (const PacketMask rays = mask & 0xfu << kFour * four; rays != 0) visit(four, rays);
+  }
 
   /// m from the first to the last sample of a sweep.
   float ahead_of_sweep() const { return static_cast<float>(samples_ - 1) * step_; }
 
-  /// From where on the density is asked when a ray goes on at at_: summits may lie before it.
-  float back(int i) const { return std::max(at_[i] - 2.0f * step_, beam_.entry[i]); }
+  /// From where on the density is asked when rays go on at at_: summits may lie before it.
   float first_of(BeamMask group) const {
     const Tag d;
     const Vec two_steps = hn::Set(d, 2.0f * step_);
@@ -88,231 +93,351 @@ class BeamMarch {
 
   void gather(BeamMask group, float first, float last) {
     const float reach = field_.options.smoothing_length;
-    gather_capsule(field_, capsule_around(beam_, group, first, last, reach), reach, lists_.near[0]);
+    gather_capsule(field_, capsule_around(beam_, group, first, last, reach), reach, lists_.whole);
   }
 
-  /// The next samples of some rays, of those that are left of kBeam / 4^level from `begin` on.
-  /// @param near  what is gathered around all that they look at
-  void look_from(BeamMask group, const PacketList& near, int level, int begin) {
-    if (near.count == 0 && sign_ > 0 && !near.near_full) return for_each_ray(group, [&](int i) { skip(i); });
-    const int part = kBeam >> (2 * level + 2);
-    if (level + 1 == BeamLists::kLevels || near.count <= kFewNear || __builtin_popcountll(group) < kWorthNarrowing) {
-      const float ahead = ahead_of_sweep();
-      return in_turn(
-          group, near, [&](int i) { return back(i); }, [&](int i) { return at_[i] + ahead; }, at_,
-          [&](const int* rays, int count) { sweep(rays, count); });
-    }
-    for (; group != 0; begin += part) {
-      const BeamMask some = group & (((BeamMask{1} << part) - 1) << begin);
-      group &= ~some;
-      if (some == 0) continue;
-      const float reach = field_.options.smoothing_length;
-      const Capsule capsule =
-          capsule_around(beam_, some, first_of(some), largest_of(some, at_) + ahead_of_sweep(), reach);
-      narrow_list<kSizes>(field_, near, capsule, reach, lists_.near[level + 1]);
-      look_from(some, lists_.near[level + 1], level + 1, begin);
-    }
+  /// What of a list is near a stretch of some rays: the list itself if it is short.
+  const PacketList& narrowed(const PacketList& near, BeamMask rays, float first, float last, std::size_t few,
+                             PacketList& list) const {
+    if (near.count <= few) return near;
+    const float reach = field_.options.smoothing_length;
+    narrow_list<kSizes>(field_, near, capsule_around(beam_, rays, first, last, reach), reach, list);
+    return list;
   }
 
-  /// Makes the lists of a few rays at a time for their stretches, places counted from start[i], and visits those.
-  template <class First, class Last, class Visit>
-  HWY_INLINE void in_turn(BeamMask group, const PacketList& near, First first, Last last, const float* start,
-                          Visit visit) {
-    near_full_ = near.near_full;
-    while (group != 0) {
-      int rays[kRays], count = 0;
-      for (; count < kRays && group != 0; group &= group - 1) {
-        const int i = __builtin_ctzll(group);
-        list_along<kSizes>(field_, near, beam_.origin(i), beam_.direction(i), first(i), last(i), start[i],
-                           lists_.ray[count]);
-        start_[i] = start[i];
-        rays[count++] = i;
-      }
-      visit(rays, count);
-    }
+  /// Takes rays that have left the sphere that they entered to the next one: no density reaches the iso-value before.
+  /// @param last  m: as far as particles are gathered
+  /// @return  the rays that go on and whose next samples all lie before that
+  BeamMask leapt(BeamMask group, float last) {
+    group &= active_;
+    if (sign_ > 0 && !lists_.whole.near_full)
+      for_each_ray(group, [&](int i) {
+        if (sample_[i] > 0.0f) leap(i, last);
+      });
+    const Tag d;
+    const float ahead = ahead_of_sweep();
+    BeamMask reached = 0;
+    for_each_vector(group & active_, [&](int i, auto of) {
+      const auto within = hn::Le(hn::Add(hn::LoadU(d, at_ + i), hn::Set(d, ahead)), hn::Set(d, last));
+      reached |= BeamMask{bits_of(hn::And(of, within))} << i;
+    });
+    return reached;
   }
 
-  /// sign (rho - iso): a ray has crossed when this is not negative.
-  HWY_INLINE float value_of(float sum, int i, float t) const {
-    float rho = sum * field_.scale;
-    if (HWY_UNLIKELY(near_full_) && field_.grid.full_at(beam_.origin(i) + t * beam_.direction(i))) rho = 1.0f;
-    return sign_ * (rho - field_.options.iso);
-  }
-
-  HWY_INLINE float value_at(const RayList& list, int i, float t) const {
-    return value_of(sum_ray_density<Shape, kSizes>(list, per_h_, t - start_[i]), i, t);
-  }
-
-  /// The ray's next sample is the one `samples` on.
-  void advance(int i) {
-    sample_[i] += static_cast<float>(samples_);
+  HWY_INLINE void leap(int i, float last) {
+    const float free = std::min(next_entry(i), last - at_[i]);
+    const float steps =
+        std::floor(free / step_) - 1.0f;  // two samples lie before the sphere, as for any other crossing
+    if (!(steps >= 1.0f)) return;
+    sample_[i] += steps;
     at_[i] = beam_.entry[i] + sample_[i] * step_;
+    before_[i] = earlier_[i] = -field_.options.iso;
     if (at_[i] > beam_.exit[i]) active_ &= ~(BeamMask{1} << i);
   }
 
-  /// No particle is near: every sample of the stretch has density zero.
-  void skip(int i) {
-    before_[i] = earlier_[i] = -field_.options.iso;
-    advance(i);
+  /// m from at_ to where the ray enters the next of the spheres around the gathered particles; negative inside of one.
+  HWY_INLINE float next_entry(int i) const {
+    const Tag d;
+    const PacketList& near = lists_.whole;
+    const vec3 direction = beam_.direction(i), at = beam_.origin(i) + at_[i] * direction;
+    const Vec x0 = hn::Set(d, at.x), y0 = hn::Set(d, at.y), z0 = hn::Set(d, at.z), dx = hn::Set(d, direction.x),
+              dy = hn::Set(d, direction.y), dz = hn::Set(d, direction.z), zero = hn::Zero(d),
+              share = hn::Set(d, field_.widest_entry);
+    const float radius = field_.widest_entry * field_.options.smoothing_length;
+    Vec radius2 = hn::Set(d, radius * radius), next = hn::Set(d, std::numeric_limits<float>::infinity());
+    for (std::size_t j = 0; j < near.count; j += hn::Lanes(d)) {
+      const Vec x = hn::Sub(hn::Load(d, near.x.data() + j), x0), y = hn::Sub(hn::Load(d, near.y.data() + j), y0),
+                z = hn::Sub(hn::Load(d, near.z.data() + j), z0);
+      if constexpr (kSizes) {
+        const Vec own = hn::Div(share, hn::Load(d, near.per_smoothing.data() + j));
+        radius2 = hn::Mul(own, own);
+      }
+      const Vec along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, hn::Mul(z, dz)));
+      const Vec off2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+      const Vec half2 = hn::Sub(radius2, hn::NegMulAdd(along, along, off2));
+      const Vec half = hn::Sqrt(hn::Max(half2, zero));
+      const auto ahead = hn::And(hn::Gt(half2, zero), hn::Gt(hn::Add(along, half), zero));
+      const auto hit = hn::And(ahead, hn::FirstN(d, near.count - j));
+      next = hn::IfThenElse(hit, hn::Min(next, hn::Sub(along, half)), next);
+    }
+    return hn::GetLane(hn::MinOfLanes(d, next));
   }
 
-  struct Bracket {
-    float low_t, low, high_t, high;
-    /// Where the line through the ends is zero.
-    float secant() const {
-      const float part = high > low ? -low / (high - low) : 0.5f;
-      return low_t + std::clamp(part, 0.0f, 1.0f) * (high_t - low_t);
+  /// Takes the next samples of the rays of a part, and the crossings that lie between them.
+  void look(int first, PacketMask rays) {
+    const auto next_of = [&](const PacketList& near, PacketMask some, std::size_t few,
+                             PacketList& list) -> const PacketList& {
+      const BeamMask mask = BeamMask{some} << first;
+      return narrowed(near, mask, first_of(mask), largest_of(mask, at_) + ahead_of_sweep(), few, list);
+    };
+    const PacketList& near = next_of(lists_.whole, rays, kFewOfPart, lists_.part);
+    alignas(64) float values[2 + kRaySamples][kPacket];  // the last two, and the next
+    std::copy_n(earlier_ + first, kPacket, values[0]);
+    std::copy_n(before_ + first, kPacket, values[1]);
+    for_each_four(rays, [&](int four, PacketMask some) {
+      list_[four] = &next_of(near, some, kFewOfFour, lists_.four[four]);
+      const int begin = first + kFour * four;
+      alignas(64) float rho[kPacket];
+      sum_samples<Shape, kSizes>(field_, *list_[four], rays_of(begin), at_ + begin, step_, rho);
+      for (int k = 0; k < kRaySamples; ++k) std::copy_n(rho + kFour * k, kFour, &values[2 + k][kFour * four]);
+    });
+    Brackets brackets;
+    refine(first, find_brackets(first, rays, values, brackets), brackets);
+    for_each_chunk(rays, [&](int l, auto of) {
+      const Tag d;
+      store_in(of, hn::Load(d, values[samples_] + l), earlier_ + first + l);
+      store_in(of, hn::Load(d, values[samples_ + 1] + l), before_ + first + l);
+    });
+    advance(first, rays);
+  }
+
+  FourRays rays_of(int begin) const { return {beam_.rays[begin / kPacket], begin % kPacket}; }
+
+  /// The rays' next samples are those after a sweep.
+  void advance(int first, PacketMask rays) {
+    const Tag d;
+    PacketMask ended = 0;
+    for_each_chunk(rays, [&](int l, auto of) {
+      const int i = first + l;
+      const Vec sample = hn::Add(hn::Load(d, sample_ + i), hn::Set(d, static_cast<float>(samples_)));
+      const Vec at = hn::MulAdd(sample, hn::Set(d, step_), hn::Load(d, beam_.entry + i));
+      store_in(of, sample, sample_ + i);
+      store_in(of, at, at_ + i);
+      ended |= bits_of(hn::And(of, hn::Gt(at, hn::Load(d, beam_.exit + i)))) << l;
+    });
+    active_ &= ~(BeamMask{ended} << first);
+  }
+
+  /// What holds the crossings of a part's rays: places, m, and sign (rho - iso) there, negative at the low end.
+  struct Brackets {
+    alignas(64) float low_t[kPacket];
+    alignas(64) float low[kPacket];
+    alignas(64) float high_t[kPacket];
+    alignas(64) float high[kPacket];
+
+    void set(hn::Mask<Tag> of, int l, Vec from, Vec from_value, Vec to, Vec to_value) {
+      store_in(of, from, low_t + l);
+      store_in(of, from_value, low + l);
+      store_in(of, to, high_t + l);
+      store_in(of, to_value, high + l);
     }
-    void narrow(float t, float value) {
-      (value < 0.0f ? low_t : high_t) = t;
-      (value < 0.0f ? low : high) = value;
+    /// Where the line through the ends is zero.
+    HWY_INLINE Vec secant(int l) const {
+      const Tag d;
+      const Vec from = hn::Load(d, low_t + l), zero = hn::Zero(d), value = hn::Load(d, low + l);
+      const Vec rise = hn::Sub(hn::Load(d, high + l), value);
+      const Vec part = hn::IfThenElse(hn::Gt(rise, zero), hn::Div(hn::Neg(value), rise), hn::Set(d, 0.5f));
+      const Vec clamped = hn::Min(hn::Max(part, zero), hn::Set(d, 1.0f));
+      return hn::MulAdd(clamped, hn::Sub(hn::Load(d, high_t + l), from), from);
+    }
+    HWY_INLINE void narrow(hn::Mask<Tag> of, int l, Vec t, Vec value) {
+      const Tag d;
+      const auto below = hn::Lt(value, hn::Zero(d));
+      const auto lower = hn::And(of, below), upper = hn::AndNot(below, of);
+      store_in(lower, t, low_t + l);
+      store_in(lower, value, low + l);
+      store_in(upper, t, high_t + l);
+      store_in(upper, value, high + l);
     }
   };
 
-  /// The next samples of a few rays, and the crossings that lie between them.
-  void sweep(const int* rays, int count) {
-    float sums[kRays][kRaySamples];
-    for (int r = 0; r < count; ++r) sum_ray_samples<Shape, kSizes>(lists_.ray[r], per_h_, step_, sums[r]);
-    Bracket brackets[kRays];
-    int crossed[kRays], crossings = 0;
-    for (int r = 0; r < count; ++r)
-      if (look(rays[r], lists_.ray[r], sums[r], brackets[r])) crossed[crossings++] = r;
-    refine(rays, crossed, crossings, brackets);
-  }
-
-  /// Whether a ray crosses between its next samples.
-  HWY_INLINE bool look(int i, const RayList& list, const float* sums, Bracket& bracket) {
-    const BeamMask bit = BeamMask{1} << i;
-    float before = before_[i], earlier = earlier_[i];
+  /// The rays of a part that cross between samples of the sweep. Those, and the ones that end, are active no more.
+  /// @param values  sign (rho - iso) of the last two samples, rho of the next; then sign (rho - iso) of all
+  HWY_INLINE PacketMask find_brackets(int first, PacketMask rays, float (*values)[kPacket], Brackets& brackets) {
+    const Tag d;
+    const Vec zero = hn::Zero(d), step = hn::Set(d, step_), sign = hn::Set(d, sign_),
+              iso = hn::Set(d, field_.options.iso), near_iso = hn::Set(d, -kSummitMargin * field_.options.iso);
+    PacketMask open = rays, crossed = 0;
     for (int k = 0; k < samples_; ++k) {
-      const float t = at_[i] + static_cast<float>(k) * step_;
-      if (t > beam_.exit[i]) {
-        active_ &= ~bit;
-        return false;
+      PacketMask high = 0, ended = 0, started = 0, summits = 0;
+      alignas(64) float place[kPacket];
+      for_each_chunk(open, [&](int l, auto of) {
+        const Vec t = hn::MulAdd(hn::Set(d, static_cast<float>(k)), step, hn::Load(d, at_ + first + l));
+        const Vec value = hn::Mul(sign, hn::Sub(hn::Load(d, values[2 + k] + l), iso)),
+                  before = hn::Load(d, values[1 + k] + l), earlier = hn::Load(d, values[k] + l);
+        hn::Store(value, d, values[2 + k] + l);
+        const auto within = hn::And(of, hn::Le(t, hn::Load(d, beam_.exit + first + l)));
+        ended |= bits_of(hn::AndNot(within, of)) << l;
+        const auto above = hn::And(within, hn::Ge(value, zero));
+        high |= bits_of(above) << l;
+        if (k == 0) started |= bits_of(hn::And(above, hn::Eq(hn::Load(d, sample_ + first + l), zero))) << l;
+        brackets.set(above, l, hn::Sub(t, step), before, t, value);
+        // With fewer than two samples before, `earlier` or `before` is zero, above all values that have not crossed.
+        const Vec fall = hn::Sub(hn::Add(before, before), hn::Add(earlier, value)), rise = hn::Sub(value, earlier);
+        const Vec steps = hn::Div(hn::Mul(hn::Set(d, 0.5f), rise), fall);
+        const auto middle = hn::And(hn::And(hn::Gt(before, earlier), hn::Gt(before, value)), hn::Lt(earlier, zero));
+        const auto tops = hn::Gt(hn::MulAdd(hn::Mul(hn::Set(d, 0.25f), rise), steps, before), near_iso);
+        summits |= bits_of(hn::And(hn::AndNot(above, within), hn::And(middle, tops))) << l;
+        hn::Store(hn::MulAdd(steps, step, hn::Sub(t, step)), d, place + l);
+      });
+      crossed |= high & ~started;
+      started_inside_ |= BeamMask{started} << first;
+      if (HWY_UNLIKELY(summits != 0)) {
+        const PacketMask over = climb(first, summits, k, place, values, brackets);
+        crossed |= over;
+        high |= over;
       }
-      const float value = value_of(sums[k], i, t);
-      if (value >= 0.0f) {
-        active_ &= ~bit;
-        if (k == 0 && sample_[i] == 0.0f) {
-          started_inside_ |= bit;
-          return false;
-        }
-        bracket = {t - step_, before, t, value};
-        return true;
-      }
-      // With fewer than two samples before, `earlier` or `before` is zero, above all values that have not crossed.
-      if (HWY_UNLIKELY(before > earlier && before > value && earlier < 0.0f)) {
-        const Summit summit = summit_of(earlier, before, value);
-        if (summit.value > -kSummitMargin * field_.options.iso) {
-          const float middle = t - step_, at = middle + summit.place * step_;
-          const float highest = value_at(list, i, at);
-          if (highest >= 0.0f) {
-            bracket =
-                at > middle ? Bracket{middle, before, at, highest} : Bracket{middle - step_, earlier, at, highest};
-            active_ &= ~bit;
-            return true;
-          }
-        }
-      }
-      earlier = before;
-      before = value;
+      open &= ~(high | ended);
+      active_ &= ~(BeamMask{high | ended} << first);
+      if (open == 0) break;
     }
-    before_[i] = before;
-    earlier_[i] = earlier;
-    advance(i);
-    return false;
+    return crossed;
   }
 
-  /// Narrows the brackets of `count` of some rays and takes their depths.
-  HWY_INLINE void refine(const int* rays, const int* crossed, int count, Bracket* brackets) {
+  /// Asks the density at summits between samples k - 2, k - 1 and k of some rays; brackets those that cross there.
+  HWY_NOINLINE PacketMask climb(int first, PacketMask rays, int k, const float* place, const float (*values)[kPacket],
+                                Brackets& brackets) {
+    const Tag d;
+    alignas(64) float highest[kPacket], slopes[kPacket];
+    values_at(first, rays, place, highest, slopes);
+    PacketMask crossed = 0;
+    for_each_chunk(rays, [&](int l, auto of) {
+      const Vec step = hn::Set(d, step_), at = hn::Load(d, place + l), value = hn::Load(d, highest + l);
+      const Vec middle = hn::MulAdd(hn::Set(d, static_cast<float>(k - 1)), step, hn::Load(d, at_ + first + l));
+      const auto over = hn::And(of, hn::Ge(value, hn::Zero(d))), after = hn::Gt(at, middle);
+      const Vec from = hn::IfThenElse(after, middle, hn::Sub(middle, step));
+      const Vec from_value = hn::IfThenElse(after, hn::Load(d, values[1 + k] + l), hn::Load(d, values[k] + l));
+      brackets.set(over, l, from, from_value, at, value);
+      crossed |= bits_of(over) << l;
+    });
+    return crossed;
+  }
+
+  /// sign (rho - iso) and its derivative along the ray, 1/m, at t of some rays of a part, from the lists of its fours.
+  void values_at(int first, PacketMask rays, const float* t, float* values, float* rises) const {
+    for_each_four(rays, [&](int four, PacketMask some) {
+      const int l = kFour * four;
+      sum_slopes<Shape, kSizes>(field_, *list_[four], rays_of(first + l), t + l, values + l, rises + l);
+      if (HWY_UNLIKELY(list_[four]->near_full))
+        for_each_lane(some, [&](int i) {
+          if (field_.grid.full_at(beam_.origin(first + i) + t[i] * beam_.direction(first + i))) values[i] = 1.0f;
+        });
+    });
+    const Tag d;
+    const Vec sign = hn::Set(d, sign_), iso = hn::Set(d, field_.options.iso);
+    for_each_chunk(rays, [&](int l, auto) {
+      hn::Store(hn::Mul(sign, hn::Sub(hn::Load(d, values + l), iso)), d, values + l);
+      hn::Store(hn::Mul(sign, hn::Load(d, rises + l)), d, rises + l);
+    });
+  }
+
+  /// Narrows the brackets of some rays of a part and takes their depths.
+  HWY_INLINE void refine(int first, PacketMask rays, Brackets& brackets) {
+    if (rays == 0) return;
+    const Tag d;
     const RaycastOptions& options = field_.options;
-    if (!kSizes && options.refinement == Refinement::secant && options.refinement_steps == 2 && !near_full_ &&
-        samples_ > 1) {
-      for (int c = 0; c < count; ++c)
-        beam_.depth[rays[crossed[c]]] = steep_root(lists_.ray[crossed[c]], rays[crossed[c]], brackets[crossed[c]]);
-      return;
+    const bool by_secant = options.refinement == Refinement::secant;
+    int left = options.refinement_steps;
+    if (by_secant && left == 2 && samples_ > 1) {
+      rays = find_steep_roots(first, rays, brackets);
+      if (rays == 0) return;
+      left = 1;
     }
-    for (int n = 0; n < options.refinement_steps; ++n)
-      for (int c = 0; c < count; ++c) {
-        Bracket& of = brackets[crossed[c]];
-        const float t = options.refinement == Refinement::secant ? of.secant() : 0.5f * (of.low_t + of.high_t);
-        of.narrow(t, value_at(lists_.ray[crossed[c]], rays[crossed[c]], t));
-      }
-    for (int c = 0; c < count; ++c) beam_.depth[rays[crossed[c]]] = brackets[crossed[c]].secant();
+    alignas(64) float t[kPacket], values[kPacket], rises[kPacket];
+    for (; left > 0; --left) {
+      for_each_chunk(rays, [&](int l, auto) {
+        const Vec middle =
+            hn::Mul(hn::Set(d, 0.5f), hn::Add(hn::Load(d, brackets.low_t + l), hn::Load(d, brackets.high_t + l)));
+        hn::Store(by_secant ? brackets.secant(l) : middle, d, t + l);
+      });
+      values_at(first, rays, t, values, rises);
+      for_each_chunk(rays,
+                     [&](int l, auto of) { brackets.narrow(of, l, hn::Load(d, t + l), hn::Load(d, values + l)); });
+    }
+    for_each_chunk(rays, [&](int l, auto of) { store_in(of, brackets.secant(l), beam_.depth + first + l); });
   }
 
-  /// Where a ray crosses, by one sum with its derivative: that and the end of the bracket beyond the root make a
-  /// parabola. Where the root is not near, by two sums and the secant, as the plain method does it.
-  HWY_INLINE float steep_root(const RayList& list, int i, Bracket of) const {
-    const float t = of.secant();
-    const SumAndSlope found = sum_ray_slope<Shape>(list, per_h_, t - start_[i]);
-    const float value = sign_ * (found.rho * field_.scale - field_.options.iso);
-    const float rise = sign_ * found.slope * field_.scale;
-    of.narrow(t, value);
-    const float end = (value < 0.0f ? of.high_t : of.low_t) - t, end_value = value < 0.0f ? of.high : of.low;
-    const float newton = -value / rise;
-    // The parabola through (0, value) with this rise and (end, end_value).
-    const float bend = (end_value - value - rise * end) / (end * end);
-    const float step = -value / (rise + bend * newton);
-    if (std::abs(newton) < kNearRoot * field_.options.spacing && step / end >= 0.0f && step / end <= 1.0f)
-      return t + step;
-    const float next = of.secant();
-    of.narrow(next, value_at(list, i, next));
-    return of.secant();
+  /// Takes the depths of rays by one sum with its derivative: that and the end of the bracket beyond the root make a
+  /// parabola. The brackets of the others, whose root is not near, are narrowed by the sum.
+  /// @return  the others
+  HWY_INLINE PacketMask find_steep_roots(int first, PacketMask rays, Brackets& brackets) {
+    const Tag d;
+    const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f), near = hn::Set(d, kNearRoot * field_.options.spacing);
+    alignas(64) float places[kPacket] = {};
+    alignas(64) float values[kPacket], rises[kPacket];
+    for_each_chunk(rays, [&](int l, auto) { hn::Store(brackets.secant(l), d, places + l); });
+    values_at(first, rays, places, values, rises);
+    PacketMask others = rays;
+    for_each_chunk(rays, [&](int l, auto of) {
+      const Vec t = hn::Load(d, places + l), value = hn::Load(d, values + l), rise = hn::Load(d, rises + l);
+      brackets.narrow(of, l, t, value);
+      const auto below = hn::Lt(value, zero);
+      const auto other_end = [&](const float* high, const float* low) {
+        return hn::IfThenElse(below, hn::Load(d, high + l), hn::Load(d, low + l));
+      };
+      const Vec end = hn::Sub(other_end(brackets.high_t, brackets.low_t), t),
+                end_value = other_end(brackets.high, brackets.low);
+      const Vec newton = hn::Div(hn::Neg(value), rise);
+      // The parabola through (0, value) with this rise and (end, end_value).
+      const Vec bend = hn::Div(hn::Sub(hn::Sub(end_value, value), hn::Mul(rise, end)), hn::Mul(end, end));
+      const Vec step = hn::Div(hn::Neg(value), hn::MulAdd(bend, newton, rise));
+      const Vec part = hn::Div(step, end);
+      const auto good =
+          hn::And(hn::And(of, hn::Lt(hn::Abs(newton), near)), hn::And(hn::Ge(part, zero), hn::Le(part, one)));
+      store_in(good, hn::Add(t, step), beam_.depth + first + l);
+      others &= ~(bits_of(good) << l);
+    });
+    return others;
   }
 
   /// Rays whose very first sample had crossed (particles packed closer than expected): steps back, a smoothing length
   /// at most, until outside.
   void start_inside() {
     const int steps = static_cast<int>(std::ceil(field_.options.smoothing_length / step_));
-    const auto first = [&](int i) { return std::max(beam_.entry[i] - static_cast<float>(steps) * step_, 0.0f); };
+    const float back = static_cast<float>(steps) * step_;
     while (started_inside_ != 0) {
       const BeamMask group = take_group(beam_, beam_.entry, started_inside_);
-      float from = std::numeric_limits<float>::infinity(), to = 0;
-      for_each_ray(group, [&](int i) {
-        from = std::min(from, first(i));
-        to = std::max(to, beam_.entry[i]);
+      gather(group, std::max(least_of(group, beam_.entry) - back, 0.0f), largest_of(group, beam_.entry));
+      for_each_part(group, [&](int first, PacketMask rays) {
+        for_each_four(rays, [&](int four, PacketMask some) {
+          const BeamMask mask = BeamMask{some} << first;
+          list_[four] = &narrowed(lists_.whole, mask, std::max(least_of(mask, beam_.entry) - back, 0.0f),
+                                  largest_of(mask, beam_.entry), kFewOfFour, lists_.four[four]);
+        });
+        walk_back(first, rays, steps);
       });
-      gather(group, from, to);
-      in_turn(
-          group, lists_.near[0], first, [&](int i) { return beam_.entry[i]; }, beam_.entry,
-          [&](const int* rays, int count) {
-            Bracket brackets[kRays];
-            int crossed[kRays], crossings = 0;
-            for (int r = 0; r < count; ++r)
-              if (walk_back(rays[r], lists_.ray[r], steps, brackets[r])) crossed[crossings++] = r;
-            refine(rays, crossed, crossings, brackets);
-          });
     }
   }
 
-  /// Whether a ray has been outside before its entry.
-  bool walk_back(int i, const RayList& list, int steps, Bracket& bracket) {
-    float high_t = beam_.entry[i], high = value_at(list, i, high_t);
-    for (int n = 1; n <= steps; ++n) {
-      const float t = std::max(beam_.entry[i] - static_cast<float>(n) * step_, 0.0f), value = value_at(list, i, t);
-      if (value < 0.0f) {
-        bracket = {t, value, high_t, high};
-        return true;
-      }
-      high_t = t;
-      high = value;
-      if (t == 0.0f) break;
+  void walk_back(int first, PacketMask rays, int steps) {
+    Brackets brackets;
+    alignas(64) float t[kPacket], values[kPacket], rises[kPacket];
+    std::copy_n(beam_.entry + first, kPacket, t);
+    values_at(first, rays, t, values, rises);
+    PacketMask open = rays, crossed = 0;
+    for (int n = 1; n <= steps && open != 0; ++n) {
+      for_each_lane(open, [&](int l) {
+        brackets.high_t[l] = t[l];
+        brackets.high[l] = values[l];
+        t[l] = std::max(beam_.entry[first + l] - static_cast<float>(n) * step_, 0.0f);
+      });
+      values_at(first, open, t, values, rises);
+      for_each_lane(open, [&](int l) {
+        if (values[l] < 0.0f) {
+          brackets.low_t[l] = t[l];
+          brackets.low[l] = values[l];
+          crossed |= 1u << l;
+        } else if (t[l] > 0.0f && n < steps)
+          return;
+        else
+          beam_.depth[first + l] = t[l];
+        open &= ~(1u << l);
+      });
     }
-    beam_.depth[i] = high_t;
-    return false;
+    refine(first, crossed, brackets);
   }
 
   const RaycastField& field_;
   BeamLists& lists_;
   Beam& beam_;
-  float sign_, step_, per_h_;
-  int samples_;             ///< of a sweep
-  bool near_full_ = false;  ///< of what the lists were made of
+  float sign_, step_;
+  int samples_;                     ///< of a sweep
+  const PacketList* list_[kFours];  ///< of the fours of the part that is looked at
   BeamMask active_ = 0, started_inside_ = 0;
-  float sample_[kBeam], at_[kBeam];       ///< the ray's next sample, and where it lies
-  float start_[kBeam];                    ///< what the places of its list are counted from
-  float earlier_[kBeam], before_[kBeam];  ///< values of the last two samples
+  alignas(64) float sample_[kBeam];   ///< the ray's next sample,
+  alignas(64) float at_[kBeam];       ///< and where it lies
+  alignas(64) float earlier_[kBeam];  ///< values of the last two samples
+  alignas(64) float before_[kBeam];
 };
 
 }  // namespace

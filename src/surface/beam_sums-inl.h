@@ -1,4 +1,4 @@
-// Density along one ray from its list; included once for each instruction set, after highway.h.
+// Density at places along four rays of a beam; included once for each instruction set, after highway.h.
 
 #if defined(MENISCUS_SURFACE_BEAM_SUMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MENISCUS_SURFACE_BEAM_SUMS_INL_H_
@@ -9,7 +9,7 @@
 
 #include <hwy/highway.h>
 
-#include "surface/beam_list-inl.h"
+#include "surface/beam_gather-inl.h"
 #include "surface/packet_kernels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,89 +18,124 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr int kRaySamples = 4;  ///< summed at once
+constexpr int kFour = 4;        ///< rays that share a list
+static_assert(kFour * kRaySamples == kPacket);
 
-/// The sums of four vectors' lanes; the order is the same whatever the vectors hold.
-HWY_INLINE void sums_of(Vec a, Vec b, Vec c, Vec e, float* sums) {
-#if HWY_TARGET == HWY_SCALAR
-  sums[0] = hn::GetLane(a), sums[1] = hn::GetLane(b), sums[2] = hn::GetLane(c), sums[3] = hn::GetLane(e);
-#else
-  const Tag d;
-  const hn::Repartition<double, Tag> pairs;
-  const auto fold = [&](Vec p, Vec q) { return hn::Add(hn::InterleaveLower(d, p, q), hn::InterleaveUpper(d, p, q)); };
-  const auto ab = hn::BitCast(pairs, fold(a, b)), ce = hn::BitCast(pairs, fold(c, e));
-  const Vec all =
-      hn::Add(hn::BitCast(d, hn::InterleaveLower(pairs, ab, ce)), hn::BitCast(d, hn::InterleaveUpper(pairs, ab, ce)));
-  alignas(64) float blocks[kPacket];
-  hn::Store(all, d, blocks);
-  const hn::FixedTag<float, 4> four;
-  auto sum = hn::Load(four, blocks);
-  for (std::size_t l = 4; l < hn::Lanes(d); l += 4) sum = hn::Add(sum, hn::Load(four, blocks + l));
-  hn::StoreU(sum, four, sums);
-#endif
-}
+/// Four of a packet's rays.
+class FourRays {
+ public:
+  FourRays(const PacketRays& rays, int first) : rays_(rays), first_(first) {}
 
-/// rho / scale at k `step` m from the start of a ray's stretch, k = 0 .. 3, to 1e-3.
-template <class Shape, bool kSizes>
-HWY_NOINLINE void sum_ray_samples(const RayList& list, float per_smoothing, float step, float* rho) {
-  const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  const Vec zero = hn::Zero(d);
-  Vec step_h = hn::Set(d, step * per_smoothing), step_2h = hn::Set(d, 2.0f * step * per_smoothing),
-      step_3h = hn::Set(d, 3.0f * step * per_smoothing);
-  Vec sum0 = zero, sum1 = zero, sum2 = zero, sum3 = zero;
-  for (std::size_t j = 0; j < list.count; j += lanes) {
-    const Vec place = hn::Load(d, list.place.data() + j), core = hn::Load(d, list.core.data() + j),
-              mass = hn::Load(d, list.mass.data() + j);
-    if constexpr (kSizes) {
-      step_h = hn::Mul(hn::Set(d, step), hn::Load(d, list.per_h.data() + j));
-      step_2h = hn::Add(step_h, step_h);
-      step_3h = hn::Add(step_2h, step_h);
-    }
-    const auto add = [&](Vec off, Vec& sum) {
-      sum = hn::Add(sum, Shape::bracket(hn::Max(hn::NegMulAdd(off, off, core), zero), mass));
-    };
-    add(place, sum0);
-    add(hn::Sub(step_h, place), sum1);
-    add(hn::Sub(step_2h, place), sum2);
-    add(hn::Sub(step_3h, place), sum3);
+  /// Lanes l and after of sixteen points of which lane 4 k + r lies at t[r] + k step of ray r.
+  HWY_INLINE void samples(const float* t, float step, int l, Vec& x, Vec& y, Vec& z) const {
+    alignas(64) static constexpr float kSample[kPacket] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+    const Tag d;
+    const Vec at = hn::MulAdd(hn::Load(d, kSample + l), hn::Set(d, step), in_turn(t, l));
+    place(
+        at, [&](const float* values) { return in_turn(values + first_, l); }, x, y, z);
   }
-  sums_of(sum0, sum1, sum2, sum3, rho);
-}
 
-/// rho / scale at t m from the start of the ray's stretch.
-template <class Shape, bool kSizes>
-HWY_NOINLINE float sum_ray_density(const RayList& list, float per_smoothing, float t) {
-  const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  const Vec one = hn::Set(d, 1.0f);
-  Vec at = hn::Set(d, t * per_smoothing);
-  Vec sum = hn::Zero(d), slope = hn::Zero(d);
-  for (std::size_t j = 0; j < list.count; j += lanes) {
-    if constexpr (kSizes) at = hn::Mul(hn::Set(d, t), hn::Load(d, list.per_h.data() + j));
-    const Vec along = hn::Sub(at, hn::Load(d, list.place.data() + j));
-    const Vec r2 = hn::MulAdd(along, along, hn::Sub(one, hn::Load(d, list.core.data() + j)));
-    Shape::exact(r2, along, one, hn::Load(d, list.mass.data() + j), sum, slope);
+  /// Places t[r] in vector v of those that hold each of the four kCopies times over, and the rays' directions.
+  struct Copies {
+    Vec x, y, z, dx, dy, dz;
+  };
+  HWY_INLINE Copies copies(const float* t, int v) const {
+    Copies of;
+    place(
+        copied(t, v), [&](const float* values) { return copied(values + first_, v); }, of.x, of.y, of.z);
+    of.dx = copied(rays_.dx + first_, v);
+    of.dy = copied(rays_.dy + first_, v);
+    of.dz = copied(rays_.dz + first_, v);
+    return of;
   }
-  return hn::GetLane(hn::SumOfLanes(d, sum));
-}
+  /// Copies of one ray that stand side by side, each for another particle.
+  static constexpr int kCopies = HWY_TARGET == HWY_SCALAR ? 1 : 4;
 
-struct SumAndSlope {
-  float rho, slope;
+ private:
+  template <class Get>
+  HWY_INLINE void place(Vec at, Get get, Vec& x, Vec& y, Vec& z) const {
+    x = hn::MulAdd(at, get(rays_.dx), get(rays_.ox));
+    y = hn::MulAdd(at, get(rays_.dy), get(rays_.oy));
+    z = hn::MulAdd(at, get(rays_.dz), get(rays_.oz));
+  }
+  static HWY_INLINE Vec in_turn(const float* values, int l) {
+    const Tag d;
+    return kCopies == 1 ? hn::LoadU(d, values + l % kFour) : hn::LoadDup128(d, values);
+  }
+  static HWY_INLINE Vec copied(const float* values, int v) {
+    const Tag d;
+    if (kCopies == 1) return hn::LoadU(d, values + v);
+    alignas(64) static constexpr std::int32_t kRay[kPacket] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+    return hn::TableLookupLanes(hn::LoadDup128(d, values),
+                                hn::SetTableIndices(d, kRay + v * static_cast<int>(hn::Lanes(d))));
+  }
+
+  const PacketRays& rays_;
+  int first_;
 };
 
-/// The same and its derivative along the ray, 1/m, both over scale; of particles that are all alike.
-template <class Shape>
-HWY_NOINLINE SumAndSlope sum_ray_slope(const RayList& list, float per_smoothing, float t) {
+/// rho to 1e-3 at sixteen places, rho[4 k + r] at t[r] + k step of ray r.
+template <class Shape, bool kSizes>
+HWY_NOINLINE void sum_samples(const RaycastField& field, const PacketList& list, const FourRays& rays, const float* t,
+                              float step, float* rho) {
   const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  const Vec one = hn::Set(d, 1.0f), at = hn::Set(d, t * per_smoothing);
-  Vec sum = hn::Zero(d), slope = hn::Zero(d);
-  for (std::size_t j = 0; j < list.count; j += lanes) {
-    const Vec along = hn::Sub(at, hn::Load(d, list.place.data() + j));
-    const Vec r2 = hn::MulAdd(along, along, hn::Sub(one, hn::Load(d, list.core.data() + j)));
-    Shape::exact(r2, along, one, hn::Load(d, list.mass.data() + j), sum, slope);
+  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const float per_h = 1.0f / field.options.smoothing_length;
+  Vec per_h2 = hn::Set(d, per_h * per_h);
+  const float *lx = list.x.data(), *ly = list.y.data(), *lz = list.z.data(), *lm = list.mass.data();
+  for (int l = 0; l < kPacket; l += static_cast<int>(hn::Lanes(d))) {
+    Vec px, py, pz;
+    rays.samples(t, step, l, px, py, pz);
+    Vec sum = zero;
+    for (std::size_t j = 0; j < list.count; ++j) {
+      const Vec x = hn::Sub(px, hn::Set(d, lx[j])), y = hn::Sub(py, hn::Set(d, ly[j])),
+                z = hn::Sub(pz, hn::Set(d, lz[j]));
+      if constexpr (kSizes) {
+        const float own = list.per_smoothing.data()[j];
+        per_h2 = hn::Set(d, own * own);
+      }
+      const Vec r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+      const Vec s = hn::Max(hn::NegMulAdd(r2, per_h2, one), zero);
+      sum = hn::Add(sum, Shape::bracket(s, hn::Set(d, lm[j])));
+    }
+    hn::Store(hn::Mul(sum, hn::Set(d, field.scale)), d, rho + l);
+    if (HWY_UNLIKELY(list.near_full)) fill_where_full(field.grid, px, py, pz, rho + l);
   }
-  return {hn::GetLane(hn::SumOfLanes(d, sum)), Shape::kSlope * per_smoothing * hn::GetLane(hn::SumOfLanes(d, slope))};
+}
+
+/// rho and its derivative along the ray, 1/m, at t[r] of ray r.
+template <class Shape, bool kSizes>
+HWY_NOINLINE void sum_slopes(const RaycastField& field, const PacketList& list, const FourRays& rays, const float* t,
+                             float* rho, float* slope) {
+  const Tag d;
+  constexpr int kCopies = FourRays::kCopies;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const Vec scale = hn::Set(d, field.scale), slope_scale = hn::Set(d, field.scale * Shape::kSlope);
+  Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length);
+  const float *lx = list.x.data(), *ly = list.y.data(), *lz = list.z.data(), *lm = list.mass.data();
+  alignas(64) float sums[kPacket], slopes[kPacket];
+  for (int v = 0; v * lanes < kFour * kCopies; ++v) {
+    const auto of = rays.copies(t, v);
+    Vec sum = hn::Zero(d), rise = hn::Zero(d);
+    for (std::size_t j = 0; j < list.count; j += kCopies) {
+      const Vec x = hn::Sub(of.x, hn::LoadDup128(d, lx + j)), y = hn::Sub(of.y, hn::LoadDup128(d, ly + j)),
+                z = hn::Sub(of.z, hn::LoadDup128(d, lz + j));
+      if constexpr (kSizes) per_h = hn::LoadDup128(d, list.per_smoothing.data() + j);
+      const Vec r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+      const Vec along = hn::MulAdd(x, of.dx, hn::MulAdd(y, of.dy, hn::Mul(z, of.dz)));
+      Shape::exact(r2, along, per_h, hn::LoadDup128(d, lm + j), sum, rise);
+    }
+    hn::Store(hn::Mul(sum, scale), d, sums + v * lanes);
+    hn::Store(hn::Mul(rise, slope_scale), d, slopes + v * lanes);
+  }
+  for (int r = 0; r < kFour; ++r) {
+    rho[r] = sums[r * kCopies];
+    slope[r] = slopes[r * kCopies];
+    for (int copy = 1; copy < kCopies; ++copy) {
+      rho[r] += sums[r * kCopies + copy];
+      slope[r] += slopes[r * kCopies + copy];
+    }
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "surface/masses.h"
 
 #include <algorithm>
+#include <mutex>
 
 namespace meniscus {
 namespace {
@@ -21,9 +22,14 @@ class MassBlock {
     find_exceptions(field_, rows_, groups_, rule_.full_density, exceptions_);
     for (const MassException& exception : exceptions_) {
       field_.mass[exception.sorted] = mass_at(rule_, exception.density);
-      field_.entry_radius[exception.sorted] = entry_radius_at(field_.options, exception.density);
+      const float radius = entry_radius_at(field_.options, exception.density);
+      field_.entry_radius[exception.sorted] = radius;
+      widest_ = std::max(widest_, radius);
     }
   }
+
+  /// m, the widest entry radius that has been set.
+  float widest() const { return widest_; }
 
  private:
   /// Rows of cells, -1 .. 8 along y and z, that hold an open cell with particles or are beside such a row.
@@ -131,6 +137,7 @@ class MassBlock {
 
   RaycastField& field_;
   const MassRule& rule_;
+  float widest_ = 0;
   std::array<unsigned, kSide> open_;    ///< by z; bit y: the row holds an open cell
   std::array<unsigned, kWide> wanted_;  ///< by z + 1; bit y + 1
   std::array<int, 27> around_;          ///< blocks, or -1
@@ -145,9 +152,12 @@ class MassBlock {
 void find_masses(RaycastField& field) {
   constexpr std::size_t kBlocks = 8;
   const MassRule rule = mass_rule(field.options);
+  std::mutex held;
   parallel_for(static_cast<std::size_t>(field.grid.blocks()), kBlocks, [&](std::size_t begin, std::size_t end) {
     MassBlock piece(field, rule);
     for (std::size_t block = begin; block < end; ++block) piece.find(static_cast<int>(block));
+    const std::lock_guard lock(held);
+    field.widest_entry = std::max(field.widest_entry, piece.widest() / field.options.smoothing_length);
   });
 }
 

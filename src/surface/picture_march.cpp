@@ -154,7 +154,7 @@ class PictureMarch {
       found[l] = depth(pixels.x[i], pixels.y[i]);
     }
     const PacketMask mask = (1u << pixels.count) - 1u;
-    const PacketMask good = correct_packet(field_, beam.rays[0], mask, thread_lists.near[0], found);
+    const PacketMask good = correct_packet(field_, beam.rays[0], mask, thread_lists.whole, found);
     for (int l = 0; l < pixels.count; ++l)
       if ((good >> l) & 1u)
         depth(pixels.x[l], pixels.y[l]) = found[l];

@@ -133,6 +133,7 @@ RaycastField make_field(const Particles& particles, const RaycastOptions& given,
     for (auto colour : {&RaycastField::red, &RaycastField::green, &RaycastField::blue})
       (field.*colour).resize(count + BandGrid::kPadding, 0.0f);
   const float radius = entry_radius_at(options, 1.0f);
+  field.widest_entry = radius / options.smoothing_length;
   constexpr std::size_t kGrain = 1 << 15;
   parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
     std::fill(&field.mass[begin], &field.mass[begin] + (end - begin), 1.0f);

@@ -28,6 +28,7 @@ struct RaycastField {
   std::vector<RaycastField> coarser;  ///< levels of larger particles, ascending; empty where all are alike
 
   float least_spacing = 0;  ///< m, of the smallest particle of all levels
+  float widest_entry = 1;   ///< no entry radius is more, in smoothing lengths of its particle
 
   bool has_colours() const { return !red.empty(); }
   bool has_sizes() const { return !per_spacing.empty(); }

@@ -67,6 +67,7 @@ RaycastField make_sized_field(const Particles& particles, const ResolvedSizes& o
   for (std::size_t k = 1; k < levels.size(); ++k) field.coarser.push_back(level_of(particles, own, colours, levels[k]));
   for (const RaycastField& level : field.coarser)
     field.least_spacing = std::min(field.least_spacing, level.least_spacing);
+  field.widest_entry = 1;
   field.step = field.options.step * *std::min_element(own.smoothing_length.begin(), own.smoothing_length.end());
   return field;
 }
