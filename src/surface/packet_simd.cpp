@@ -45,7 +45,7 @@ void for_each_cluster(const RaycastField& field, const PacketPoints& points, Pac
 
 /// Corrections of depths foretold, in spacings: the farthest that is believed, one that needs no further step (what is
 /// left after a step of Newton's method is about its square), and the least slope of rho for one, per spacing.
-constexpr float kFarthestCorrection = 0.25f, kNearCorrection = 0.04f, kLeastSlope = 0.05f;
+constexpr float kFarthestCorrection = 0.25f, kNearCorrection = 0.08f, kLeastSlope = 0.05f;
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-constexpr float kWidestBeam = 12.0f;   ///< spacings across, as far as pixels are not wider
+constexpr float kWidestBeam = 8.0f;    ///< spacings across, as far as pixels are not wider
 constexpr float kLeastAlong = 2.5f;    ///< spacings along rays that is shared
 constexpr float kAcrossPoints = 3.0f;  ///< spacings across rays of points that is shared
 
