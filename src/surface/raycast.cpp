@@ -41,26 +41,10 @@ class RaycastSurface final : public Surface {
           return own.empty() ? make_field(particles, own.options, colours, Keep::band)
                              : make_sized_field(particles, own, colours);
         }()) {
-    StageTimer timer(times, "masses");
-    if (field_.options.keep_thin && field_.has_sizes())
-      find_sized_masses(field_);
-    else if (field_.options.keep_thin)
-      find_masses(field_);
-    if (!field_.has_sizes()) shrink_entries_of_spray(field_);
-    for_each_level(field_, [&](RaycastField& level) {
-      forget_amidst(level);
-      hidden_cells_.add(hidden_cell_spheres(level));
-    });
-    for_each_level(field_, [&](const RaycastField& level) {
-      const std::size_t kept = level.grid.size();
-      const Spheres spheres{{level.grid.x(), kept}, {level.grid.y(), kept}, {level.grid.z(), kept}, level.entry_radius};
-      groups_.emplace_back(spheres);
-      spheres_.push_back({spheres, nullptr});
-    });
-    const Spheres cells{hidden_cells_.x, hidden_cells_.y, hidden_cells_.z, hidden_cells_.radius};
-    groups_.emplace_back(cells);
-    spheres_.push_back({cells, nullptr});
-    for (std::size_t k = 0; k < groups_.size(); ++k) spheres_[k].groups = &groups_[k];
+    make_spheres(times);
+    if (!field_.options.want_thickness || field_.has_sizes()) return;
+    StageTimer timer(times, "thickness");
+    counted();
   }
 
   SurfaceBuffers see(const View& view, std::span<const vec2> points, StageTimes* times) const override {
@@ -101,11 +85,7 @@ class RaycastSurface final : public Surface {
   Image<float> thickness(const View& view, std::span<const vec2> points, StageTimes* times) const override {
     StageTimer timer(times, "thickness");
     if (field_.has_sizes()) return sized_thickness(field_, view, points);
-    const float spacing = field_.options.spacing;
-    std::call_once(counted_made_, [&] {
-      tbb::this_task_arena::isolate([&] { counted_.emplace(field_.grid, spacing, field_.grid.counted()); });
-    });
-    return splatted_thickness(*counted_, spacing, view, points);
+    return splatted_thickness(counted(), field_.options.spacing, view, points);
   }
 
   float spacing() const override { return field_.least_spacing; }
@@ -127,6 +107,29 @@ class RaycastSurface final : public Surface {
   }
 
  private:
+  void make_spheres(StageTimes* times) {
+    StageTimer timer(times, "masses");
+    if (field_.options.keep_thin && field_.has_sizes())
+      find_sized_masses(field_);
+    else if (field_.options.keep_thin)
+      find_masses(field_);
+    if (!field_.has_sizes()) shrink_entries_of_spray(field_);
+    for_each_level(field_, [&](RaycastField& level) {
+      forget_amidst(level);
+      hidden_cells_.add(hidden_cell_spheres(level));
+    });
+    for_each_level(field_, [&](const RaycastField& level) {
+      const std::size_t kept = level.grid.size();
+      const Spheres spheres{{level.grid.x(), kept}, {level.grid.y(), kept}, {level.grid.z(), kept}, level.entry_radius};
+      groups_.emplace_back(spheres);
+      spheres_.push_back({spheres, nullptr});
+    });
+    const Spheres cells{hidden_cells_.x, hidden_cells_.y, hidden_cells_.z, hidden_cells_.radius};
+    groups_.emplace_back(cells);
+    spheres_.push_back({cells, nullptr});
+    for (std::size_t k = 0; k < groups_.size(); ++k) spheres_[k].groups = &groups_[k];
+  }
+
   /// Whether rays of this view start inside the water.
   bool starts_inside(const View& view) const {
     if (view.projection != Projection::perspective || field_.grid.size() == 0) return false;
@@ -197,6 +200,15 @@ class RaycastSurface final : public Surface {
         filtered_normals(view, buffers.depth, buffers.normal, field_.options.filter_radius, filter_tolerance());
   }
 
+  const CountedCells& counted() const {
+    // Isolated, so that the thread that makes the cells does not begin other work that waits for them.
+    std::call_once(counted_made_, [&] {
+      tbb::this_task_arena::isolate(
+          [&] { counted_.emplace(field_.grid, field_.options.spacing, field_.grid.counted()); });
+    });
+    return *counted_;
+  }
+
   float filter_tolerance() const { return 0.5f * field_.least_spacing; }
 
   RaycastField field_;
@@ -204,7 +216,7 @@ class RaycastSurface final : public Surface {
   std::vector<SphereGroups> groups_;     ///< by level, and those of hidden cells
   std::vector<GroupedSpheres> spheres_;  ///< the same: the field's own arrays, and hidden_cells_
   mutable std::once_flag counted_made_;
-  mutable std::optional<CountedCells> counted_;  ///< made when thickness is asked for for the first time
+  mutable std::optional<CountedCells> counted_;  ///< made at once if thickness is wanted, else when it is asked for
   mutable std::once_flag cells_made_;
   mutable std::optional<MarchCells> cells_;  ///< made when rays are followed for the first time
 };

@@ -18,13 +18,13 @@ using Tag = HWY_CAPPED(float, 16);
 using Vec = hn::Vec<Tag>;
 
 void points(const SplatCamera& camera, const float* x, const float* y, const float* z, const float* shares,
-            float volume, std::size_t count, ThicknessCanvas& canvas) {
+            float volume, std::size_t count, PointCanvas& canvas) {
   const Tag d;
   const hn::RebindToSigned<Tag> di;
   const std::size_t lanes = hn::Lanes(d);
   alignas(64) std::int32_t at[16];
-  alignas(64) float upper_pairs[32], lower_pairs[32];
-  const HWY_CAPPED(float, 2) pair;
+  alignas(64) float fours[4 * 16];
+  const HWY_CAPPED(float, 4) four;
   const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const Vec per_du = hn::Set(d, 1.0f / camera.du), per_dv = hn::Set(d, 1.0f / camera.dv);
   const Vec per_area = hn::Set(d, 1.0f / (camera.du * camera.du));
@@ -66,17 +66,36 @@ void points(const SplatCamera& camera, const float* x, const float* y, const flo
     const Vec fx = hn::Sub(px, ix), fy = hn::Sub(py, iy);
     const Vec lower = hn::Mul(water, fy), upper = hn::Sub(water, lower);
     const Vec upper_right = hn::Mul(upper, fx), lower_right = hn::Mul(lower, fx);
-    hn::StoreInterleaved2(hn::Sub(upper, upper_right), upper_right, d, upper_pairs);
-    hn::StoreInterleaved2(hn::Sub(lower, lower_right), lower_right, d, lower_pairs);
+    hn::StoreInterleaved4(hn::Sub(upper, upper_right), upper_right, hn::Sub(lower, lower_right), lower_right, d, fours);
     const auto column = hn::ConvertTo(di, hn::IfThenElseZero(within, hn::Add(ix, one)));
     const auto row = hn::ConvertTo(di, hn::IfThenElseZero(within, hn::Add(iy, one)));
     hn::Store(hn::Add(hn::Mul(row, hn::Set(di, canvas.pitch)), column), di, at);
-    for (std::size_t l = 0; l < here; ++l) {
-      const auto add = [&](float* to, const float* more) {
-        hn::StoreU(hn::Add(hn::LoadU(pair, to), hn::Load(pair, more)), pair, to);
+    for (std::size_t l = 0; l < here; ++l)
+      for (std::size_t k = 0; k < 4; k += hn::Lanes(four)) {
+        float* to = values + 4 * static_cast<std::ptrdiff_t>(at[l]) + k;
+        hn::StoreU(hn::Add(hn::LoadU(four, to), hn::LoadU(four, fours + 4 * l + k)), four, to);
+      }
+  }
+}
+
+void sums(const PointCanvas& points, ThicknessCanvas& canvas) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int x0 = points.rect.x0 - canvas.rect.x0, y0 = points.rect.y0 - canvas.rect.y0;
+  for (int y = 0; y <= points.height(); ++y) {
+    const float* from = points.values.data() + 4 * static_cast<std::ptrdiff_t>(y) * points.pitch;
+    float *upper = canvas.row(y0 + y - 1) + x0 - 1, *lower = canvas.row(y0 + y) + x0 - 1;
+    for (int x = 0; x <= points.width(); x += lanes) {
+      Vec here, right, below, across;
+      hn::LoadInterleaved4(d, from + 4 * x, here, right, below, across);
+      const auto valid = hn::FirstN(d, static_cast<std::size_t>(std::min(lanes, points.width() + 1 - x)));
+      const auto add = [&](float* to, Vec more) {
+        hn::StoreU(hn::Add(hn::LoadU(d, to), hn::IfThenElseZero(valid, more)), d, to);
       };
-      add(values + at[l], upper_pairs + 2 * l);
-      add(values + at[l] + canvas.pitch, lower_pairs + 2 * l);
+      add(upper + x, here);
+      add(upper + x + 1, right);
+      add(lower + x, below);
+      add(lower + x + 1, across);
     }
   }
 }
@@ -175,9 +194,10 @@ void box(const SplatCamera& camera, const SplatBox& box, float weight, float edg
 }  // namespace
 
 void AddPoints(const SplatCamera& camera, const float* x, const float* y, const float* z, const float* shares,
-               float volume, std::size_t count, ThicknessCanvas& canvas) {
+               float volume, std::size_t count, PointCanvas& canvas) {
   points(camera, x, y, z, shares, volume, count, canvas);
 }
+void AddSums(const PointCanvas& points, ThicknessCanvas& canvas) { sums(points, canvas); }
 void AddSphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {
   sphere(camera, centre, radius, weight, canvas);
 }
@@ -193,6 +213,7 @@ HWY_AFTER_NAMESPACE();
 namespace meniscus {
 
 HWY_EXPORT(AddPoints);
+HWY_EXPORT(AddSums);
 HWY_EXPORT(AddSphere);
 HWY_EXPORT(AddBox);
 
@@ -203,8 +224,15 @@ void ThicknessCanvas::start(const SampleRect& samples) {
   values.assign(static_cast<std::size_t>(pitch) * static_cast<std::size_t>(height() + 2) + 16, 0.0f);
 }
 
+void PointCanvas::start(const SampleRect& samples) {
+  rect = samples;
+  pitch = width() + 1;
+  values.assign(4 * (static_cast<std::size_t>(pitch) * static_cast<std::size_t>(height() + 1) + 16), 0.0f);
+}
+
+void add_sums(const PointCanvas& points, ThicknessCanvas& canvas) { HWY_DYNAMIC_DISPATCH(AddSums)(points, canvas); }
 void add_points(const SplatCamera& camera, const float* x, const float* y, const float* z, const float* shares,
-                std::size_t count, float volume, ThicknessCanvas& canvas) {
+                std::size_t count, float volume, PointCanvas& canvas) {
   HWY_DYNAMIC_DISPATCH(AddPoints)(camera, x, y, z, shares, volume, count, canvas);
 }
 void add_sphere(const SplatCamera& camera, vec3 centre, float radius, float weight, ThicknessCanvas& canvas) {

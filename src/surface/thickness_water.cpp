@@ -82,7 +82,8 @@ class Water {
   }
 
   void add(int block, ThicknessCanvas& canvas) const {
-    if (samples(block).empty()) return;
+    const SampleRect rect = samples(block);
+    if (rect.empty()) return;
     const SplatBox whole = box(block);
     const float depth = glm::dot(whole.middle - camera_.eye, camera_.forward);
     const float half = glm::dot(glm::abs(camera_.forward), whole.half) + kThicknessRadius * spacing_;
@@ -109,10 +110,19 @@ class Water {
       add_cells_as_box(block, {0, 0, 0}, BandGrid::kSide, canvas);
       return;
     }
-    if (any != 0)
-      add_cells(block, cells, all_spheres || 0.5f * spacing_samples * grid_.cell_size() > kWidestPoint * spacing_,
-                canvas);
-    add_particles(block, skipped, all_spheres || spacing_samples > kWidestPoint, canvas);
+    const bool as_boxes = all_spheres || 0.5f * spacing_samples * grid_.cell_size() > kWidestPoint * spacing_;
+    const bool as_spheres = all_spheres || spacing_samples > kWidestPoint;
+    thread_local PointCanvas points;
+    if (!as_boxes || !as_spheres) points.start(rect);
+    if (any != 0) add_cells(block, cells, as_boxes, canvas, points);
+    if (as_spheres)
+      add_spheres(block, skipped, canvas);
+    else
+      for_each_run_but(block, skipped, [&](const BandGrid::Run& run) {
+        add_points(camera_, grid_.x() + run.begin, grid_.y() + run.begin, grid_.z() + run.begin, nullptr,
+                   run.end - run.begin, volume_, points);
+      });
+    if (!as_boxes || !as_spheres) add_sums(points, canvas);
   }
 
  private:
@@ -133,13 +143,13 @@ class Water {
   }
 
   /// The cells that are set: cubes of 4 and of 2 cells a side as boxes, the others one by one.
-  void add_cells(int block, const BandBits& cells, bool as_boxes, ThicknessCanvas& canvas) const {
+  void add_cells(int block, const BandBits& cells, bool as_boxes, ThicknessCanvas& canvas, PointCanvas& points) const {
     BandBits rest = cells;
     for (const int side : {4, 2}) add_cubes(block, side, rest, canvas);
     if (as_boxes)
       add_cubes(block, 1, rest, canvas);
     else
-      add_cells_as_points(block, rest, canvas);
+      add_cells_as_points(block, rest, points);
   }
 
   /// Cubes of `side` cells, at multiples of it, all of whose cells are set in `rest`; clears them there.
@@ -160,7 +170,7 @@ class Water {
   }
 
   /// Eight points a cell: one would show the rows of cells in views along an axis.
-  void add_cells_as_points(int block, const BandBits& cells, ThicknessCanvas& canvas) const {
+  void add_cells_as_points(int block, const BandBits& cells, PointCanvas& canvas) const {
     constexpr std::size_t kPoints = 8 * 64;
     float x[kPoints + 16], y[kPoints + 16], z[kPoints + 16], volumes[kPoints + 16];  // whole vectors are read
     for (int slice = 0; slice < BandGrid::kSide; ++slice) {
@@ -180,8 +190,9 @@ class Water {
     }
   }
 
-  /// Those of the block's cells that are not set.
-  void add_particles(int block, const BandBits& but, bool as_spheres, ThicknessCanvas& canvas) const {
+  /// Calls visit(run) for the particles of those of the block's cells that are not set.
+  template <class Visit>
+  void for_each_run_but(int block, const BandBits& but, Visit visit) const {
     for (int slice = 0; slice < BandGrid::kSide; ++slice) {
       const std::uint64_t word = but[static_cast<std::size_t>(slice)];
       for (int cell = 0; cell < 64;) {
@@ -193,18 +204,17 @@ class Water {
         const int last = rest == 0 ? 63 : cell + __builtin_ctzll(rest) - 1;
         const BandGrid::Run run = grid_.run(block, slice * 64 + cell, slice * 64 + last);
         cell = last + 1;
-        if (!as_spheres) {
-          if (run.begin < run.end)
-            add_points(camera_, grid_.x() + run.begin, grid_.y() + run.begin, grid_.z() + run.begin, nullptr,
-                       run.end - run.begin, volume_, canvas);
-          continue;
-        }
-        const float radius = kThicknessRadius * spacing_;
-        const float weight = volume_ / (4.0f / 3.0f * 3.14159265f * radius * radius * radius);
-        for (std::size_t i = run.begin; i < run.end; ++i)
-          add_sphere(camera_, grid_.position(i), radius, weight, canvas);
+        if (run.begin < run.end) visit(run);
       }
     }
+  }
+
+  void add_spheres(int block, const BandBits& but, ThicknessCanvas& canvas) const {
+    const float radius = kThicknessRadius * spacing_;
+    const float weight = volume_ / (4.0f / 3.0f * 3.14159265f * radius * radius * radius);
+    for_each_run_but(block, but, [&](const BandGrid::Run& run) {
+      for (std::size_t i = run.begin; i < run.end; ++i) add_sphere(camera_, grid_.position(i), radius, weight, canvas);
+    });
   }
 
   const BandGrid& grid_;
