@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "surface/beam_gather-inl.h"
+#include "surface/fours-inl.h"
 #include "surface/packet_kernels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,7 +19,6 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr int kRaySamples = 4;  ///< summed at once
-constexpr int kFour = 4;        ///< rays that share a list
 static_assert(kFour * kRaySamples == kPacket);
 
 /// Four of a packet's rays.
@@ -48,8 +48,6 @@ class FourRays {
     of.dz = copied(rays_.dz + first_, v);
     return of;
   }
-  /// Copies of one ray that stand side by side, each for another particle.
-  static constexpr int kCopies = HWY_TARGET == HWY_SCALAR ? 1 : 4;
 
  private:
   template <class Get>
@@ -61,13 +59,6 @@ class FourRays {
   static HWY_INLINE Vec in_turn(const float* values, int l) {
     const Tag d;
     return kCopies == 1 ? hn::LoadU(d, values + l % kFour) : hn::LoadDup128(d, values);
-  }
-  static HWY_INLINE Vec copied(const float* values, int v) {
-    const Tag d;
-    if (kCopies == 1) return hn::LoadU(d, values + v);
-    alignas(64) static constexpr std::int32_t kRay[kPacket] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-    return hn::TableLookupLanes(hn::LoadDup128(d, values),
-                                hn::SetTableIndices(d, kRay + v * static_cast<int>(hn::Lanes(d))));
   }
 
   const PacketRays& rays_;
@@ -108,7 +99,6 @@ template <class Shape, bool kSizes>
 HWY_NOINLINE void sum_slopes(const RaycastField& field, const PacketList& list, const FourRays& rays, const float* t,
                              float* rho, float* slope) {
   const Tag d;
-  constexpr int kCopies = FourRays::kCopies;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const Vec scale = hn::Set(d, field.scale), slope_scale = hn::Set(d, field.scale * Shape::kSlope);
   Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length);
@@ -118,12 +108,12 @@ HWY_NOINLINE void sum_slopes(const RaycastField& field, const PacketList& list, 
     const auto of = rays.copies(t, v);
     Vec sum = hn::Zero(d), rise = hn::Zero(d);
     for (std::size_t j = 0; j < list.count; j += kCopies) {
-      const Vec x = hn::Sub(of.x, hn::LoadDup128(d, lx + j)), y = hn::Sub(of.y, hn::LoadDup128(d, ly + j)),
-                z = hn::Sub(of.z, hn::LoadDup128(d, lz + j));
-      if constexpr (kSizes) per_h = hn::LoadDup128(d, list.per_smoothing.data() + j);
+      const Vec x = hn::Sub(of.x, side_by_side(lx + j)), y = hn::Sub(of.y, side_by_side(ly + j)),
+                z = hn::Sub(of.z, side_by_side(lz + j));
+      if constexpr (kSizes) per_h = side_by_side(list.per_smoothing.data() + j);
       const Vec r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
       const Vec along = hn::MulAdd(x, of.dx, hn::MulAdd(y, of.dy, hn::Mul(z, of.dz)));
-      Shape::exact(r2, along, per_h, hn::LoadDup128(d, lm + j), sum, rise);
+      Shape::exact(r2, along, per_h, side_by_side(lm + j), sum, rise);
     }
     hn::Store(hn::Mul(sum, scale), d, sums + v * lanes);
     hn::Store(hn::Mul(rise, slope_scale), d, slopes + v * lanes);

@@ -69,31 +69,12 @@ HWY_INLINE LeastEigenV least_eigenvector(Symmetric3V c) {
   return result;
 }
 
-/// Particles within their radius of each point.
-template <bool kSizes>
-HWY_NOINLINE void count_neighbours(const PacketList& list, float per_radius, const PacketPoints& points, int l,
-                                   float* neighbours) {
-  const Tag d;
-  const Vec px = hn::Load(d, points.x + l), py = hn::Load(d, points.y + l), pz = hn::Load(d, points.z + l);
-  Vec count = hn::Zero(d);
-  for (std::size_t j = 0; j < list.count; ++j) {
-    const Vec3V off{hn::Sub(hn::Set(d, list.x.data()[j]), px), hn::Sub(hn::Set(d, list.y.data()[j]), py),
-                    hn::Sub(hn::Set(d, list.z.data()[j]), pz)};
-    const Vec per = hn::Set(d, kSizes ? list.per_normal_radius.data()[j] : per_radius);
-    const auto inside = hn::Lt(hn::Mul(dot(off, off), hn::Mul(per, per)), hn::Set(d, 1.0f));
-    count = hn::Add(count, hn::IfThenElseZero(inside, hn::Set(d, 1.0f)));
-  }
-  hn::Store(count, d, neighbours);
-}
-
 /// Eq. 5 and 6 from the sums; `planar` masks the lanes with neighbours enough.
 template <class Mask>
-HWY_INLINE Vec3V blended_normal(const RaycastOptions& options, const MomentSums& sums, Vec3V p, Vec3V towards,
-                                Mask enough) {
+HWY_INLINE Vec3V blended_normal(const RaycastOptions& options, const MomentSums& sums, Vec3V towards, Mask enough) {
   const Tag d;
   const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const Vec3V outwards =
-      combined({hn::Neg(sums.gradient.x), hn::Neg(sums.gradient.y), hn::Neg(sums.gradient.z)}, sums.slopes, p);
+  const Vec3V outwards{hn::Neg(sums.gradient.x), hn::Neg(sums.gradient.y), hn::Neg(sums.gradient.z)};
   const auto has_gradient = hn::Gt(dot(outwards, outwards), hn::Set(d, 1e-10f));
   const Vec3V normal = either(has_gradient, normalized(outwards), towards);
   if (options.normals == NormalMethod::gradient) return normal;
@@ -126,13 +107,6 @@ HWY_INLINE Vec3V blended_normal(const RaycastOptions& options, const MomentSums&
   return normalized(combined(scaled(normal, hn::Sub(one, w)), hn::Mul(w, sign), eigen.direction));
 }
 
-/// Whether a list is gone through for each point of its own, particles side by side, or once for all of them, points
-/// side by side. In units of half a cycle, measured with vectors of sixteen.
-HWY_INLINE bool one_by_one(std::size_t particles, int points) {
-  constexpr std::size_t kAcross = 26, kLookedAt = 1, kOfPoint = 600;
-  return kAcross * particles > static_cast<std::size_t>(points) * (kLookedAt * particles + kOfPoint);
-}
-
 /// Normals of [Xiao2017] eq. 2 to 6 at the points of a mask, which lie in `at`'s box, from those particles of a list
 /// that lie near it; normals of other lanes mean nothing.
 template <bool kSizes>
@@ -141,43 +115,27 @@ HWY_NOINLINE void normals_near(const RaycastField& field, const PacketList& list
                                PacketPoints& normals) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  thread_local NearList near;
-  thread_local PointList own;
+  thread_local NearList near, own;
   find_near<kSizes>(list, at, near);
-  const bool by_points = one_by_one(near.count, __builtin_popcount(mask));
   PointSums sums;
-  if (by_points)
-    for (PacketMask left = mask; left != 0; left &= left - 1) {
-      const int l = __builtin_ctz(left);
+  for (int first = 0; first < kPacket; first += kFour) {
+    const PacketMask some = mask >> first & 0xfu;
+    if (some == 0) continue;
+    // Points that do not count are copies of one that does.
+    alignas(16) float x[kFour], y[kFour], z[kFour];
+    for (int k = 0; k < kFour; ++k) {
+      const int l = first + ((some >> k & 1u) != 0 ? k : __builtin_ctz(some));
       const vec3 p = at.per_radius * (vec3{points.x[l], points.y[l], points.z[l]} - at.origin);
-      sums_at_point<kSizes>(near, p, own, l, sums);
+      x[k] = p.x, y[k] = p.y, z[k] = p.z;
     }
-  else
-    multiply(near);
-  const Vec per_radius = hn::Set(d, at.per_radius), zero = hn::Zero(d);
-  const Vec3V origin = set(at.origin);
+    sums_at_four<kSizes>(near, x, y, z, own, first, sums);
+  }
+  const Vec fewest = hn::Set(d, static_cast<float>(kFewestNeighboursForPca));
   for (int l = 0; l < kPacket; l += lanes) {
     if ((mask >> l & ((1u << lanes) - 1u)) == 0) continue;
-    const Vec fewest = hn::Set(d, static_cast<float>(kFewestNeighboursForPca));
     const Vec3V out{hn::Load(d, towards.x + l), hn::Load(d, towards.y + l), hn::Load(d, towards.z + l)};
-    Vec3V normal;
-    if (by_points) {
-      const auto enough = hn::Ge(hn::Load(d, sums.neighbours + l), fewest);
-      normal = blended_normal(field.options, sums.at(l), {zero, zero, zero}, out, enough);
-    } else {
-      const Vec3V p{hn::Mul(hn::Sub(hn::Load(d, points.x + l), origin.x), per_radius),
-                    hn::Mul(hn::Sub(hn::Load(d, points.y + l), origin.y), per_radius),
-                    hn::Mul(hn::Sub(hn::Load(d, points.z + l), origin.z), per_radius)};
-      const MomentSums across = sums_across_points<kSizes>(near, p);
-      // No weight is above one: a sum above four, and what rounding adds, has five neighbours.
-      auto enough = hn::Gt(across.weights, hn::Sub(fewest, hn::Set(d, 0.9f)));
-      if (kSizes || !hn::AllTrue(d, enough)) {
-        alignas(64) float neighbours[kPacket];
-        count_neighbours<kSizes>(list, at.per_radius, points, l, neighbours);
-        enough = hn::Ge(hn::Load(d, neighbours), fewest);
-      }
-      normal = blended_normal(field.options, across, p, out, enough);
-    }
+    const auto enough = hn::Ge(hn::Load(d, sums.neighbours + l), fewest);
+    const Vec3V normal = blended_normal(field.options, sums.at(l), out, enough);
     hn::Store(normal.x, d, normals.x + l);
     hn::Store(normal.y, d, normals.y + l);
     hn::Store(normal.z, d, normals.z + l);

@@ -107,8 +107,10 @@ class PictureNormals {
         pixels.clear();
         for (int by = ly; by < ly + list; by += side)
           for (int bx = lx; bx < lx + list; bx += side)
-            for (int y = by; y < std::min(by + side, y1); y += step)
-              for (int x = bx; x < std::min(bx + side, x1); x += step) pixels.push_back({x, y});
+            for (int k = 0; k < 16; ++k) {  // in the order of a Z-shaped curve
+              const int x = bx + step * ((k & 1) | (k >> 1 & 2)), y = by + step * ((k >> 1 & 1) | (k >> 2 & 2));
+              if (x < x1 && y < y1) pixels.push_back({x, y});
+            }
         normals_of_pixels(field_, view_, pixels, buffers_);
       }
     for (int y = y0; y < y1; y += 2)
