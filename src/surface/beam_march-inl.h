@@ -46,7 +46,8 @@ class BeamMarch {
       gather(group, first_of(group), last);
       group = leapt(group, last);
       // Where nothing is near, farther is looked next time.
-      beyond = group == 0 ? std::min(4.0f * beyond, kMostSteps * step_) : kMoreSteps * step_;
+      const bool nothing = group == 0 || lists_.whole.count == 0;
+      beyond = nothing ? std::min(4.0f * beyond, kMostSteps * step_) : kMoreSteps * step_;
       while (group != 0) {
         for_each_part(group, [&](int first, PacketMask rays) { look(first, rays); });
         group = leapt(group, last);
@@ -126,8 +127,8 @@ class BeamMarch {
 
   HWY_INLINE void leap(int i, float last) {
     const float free = std::min(next_entry(i), last - at_[i]);
-    const float steps =
-        std::floor(free / step_) - 1.0f;  // two samples lie before the sphere, as for any other crossing
+    // Two samples lie before the sphere, so that a crossing has its bracket, and a summit its three values.
+    const float steps = std::floor(free / step_) - 1.0f;
     if (!(steps >= 1.0f)) return;
     sample_[i] += steps;
     at_[i] = beam_.entry[i] + sample_[i] * step_;
