@@ -58,5 +58,28 @@ TEST(Beams, OfPointsInAnyOrderMeetWhatThoseOfNeighboursDo) {
   EXPECT_GT(met, 1000u);
 }
 
+TEST(Beams, LeapOverNothingThatRaysWouldMeet) {
+  // Clumps of all densities before each other: most rays graze some spheres, leave them, and go on for a long way.
+  Particles particles = clumped_cloud(900, 30, 12);
+  for (const float back : {25.0f, 70.0f, 300.0f}) {
+    const Particles more = clumped_cloud(900, 30, static_cast<std::uint64_t>(back));
+    for (std::size_t i = 0; i < more.size(); ++i) add(particles, more.position(i) - kSpacing * vec3{0, 0, back});
+  }
+  for (const Kernel kernel : {Kernel::cubic_spline, Kernel::wyvill})
+    for (const float iso : {0.35f, 0.6f}) {
+      RaycastOptions with = options();
+      with.want_normals = with.want_thickness = false;
+      with.kernel = kernel;
+      with.iso = iso;
+      with.refinement_steps = 6;  // spheres of other sizes start their samples elsewhere
+      const View view = orthographic_view(kSpacing * vec3{0, 0, 40}, vec3{0}, {0.1f, 1, 0}, 34 * kSpacing, 160, 160);
+      const Difference d = difference(make_plain_raycast_surface(particles, with)->see(view),
+                                      make_raycast_surface(particles, with)->see(view));
+      EXPECT_GT(d.hits, 5000u);
+      EXPECT_LT(d.mismatch, 5e-4) << iso << ": " << d;
+      EXPECT_LT(d.depth_p99, 0.02) << iso << ": " << d;
+    }
+}
+
 }  // namespace
 }  // namespace meniscus
