@@ -5,6 +5,8 @@
 #define HWY_TARGET_INCLUDE "sim/neighbours_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+// after highway.h
+#include "base/packing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meniscus {
@@ -38,11 +40,11 @@ void GatherNear(const ParticleGrid& grid, std::size_t begin, std::size_t end, co
     // In the order of the search below, so that rounding cannot leave out what that would find.
     const Vec squared = hn::MulAdd(away_x, away_x, hn::MulAdd(away_y, away_y, hn::Mul(away_z, away_z)));
     const auto near = hn::And(hn::Lt(squared, limit), hn::FirstN(d, end - k));
-    hn::StoreU(hn::Compress(x, near), d, to.x.data() + count);
-    hn::StoreU(hn::Compress(y, near), d, to.y.data() + count);
-    hn::StoreU(hn::Compress(z, near), d, to.z.data() + count);
-    hn::StoreU(hn::Compress(hn::Iota(di, static_cast<std::int32_t>(k)), hn::RebindMask(di, near)), di,
-               to.index.data() + count);
+    const Packing packed(d, near);
+    hn::StoreU(packed(x), d, to.x.data() + count);
+    hn::StoreU(packed(y), d, to.y.data() + count);
+    hn::StoreU(packed(z), d, to.z.data() + count);
+    hn::StoreU(packed(hn::Iota(di, static_cast<std::int32_t>(k))), di, to.index.data() + count);
     count += hn::CountTrue(d, near);
   }
   to.count = count;
@@ -68,8 +70,9 @@ std::size_t NearAmong(const Candidates& candidates, const ParticleGrid& grid, st
     const auto number = hn::LoadU(di, candidates.index.data() + k);
     const auto near = hn::And(hn::Lt(squared, limit), hn::RebindMask(d, hn::Ne(number, me)));
     // There is room behind: whole vectors are stored, which costs less than only what was found.
-    hn::StoreU(hn::Compress(squared, near), d, r2 + count);
-    hn::StoreU(hn::Compress(number, hn::RebindMask(di, near)), di, index + count);
+    const Packing packed(d, near);
+    hn::StoreU(packed(squared), d, r2 + count);
+    hn::StoreU(packed(number), di, index + count);
     count += hn::CountTrue(d, near);
   }
   count = HWY_MIN(count, Neighbours::kMost);

@@ -12,6 +12,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/packing-inl.h"
 #include "surface/beam_rays-inl.h"
 #include "surface/packet_sizes-inl.h"
 
@@ -161,8 +162,9 @@ HWY_NOINLINE void gather_capsule(const RaycastField& field, const Capsule& capsu
       // Lanes past the run's end belong to other cells, which may be part of the box and come again.
       const auto near = hn::And(hn::Lt(axis.distance2(x, y, z), radius2), hn::FirstN(d, end - i));
       if (hn::AllFalse(d, near)) continue;
+      const Packing packed(d, near);
       const auto keep = [&](Vec values, const AlignedFloats& to) {
-        hn::StoreU(hn::Compress(values, near), d, to.data() + list.count);
+        hn::StoreU(packed(values), d, to.data() + list.count);
       };
       keep(x, list.x);
       keep(y, list.y);
@@ -218,8 +220,9 @@ HWY_NOINLINE void narrow_list(const RaycastField& field, const PacketList& all, 
     auto near = hn::Lt(axis.distance2(x, y, z), radius2);
     if constexpr (kSizes) near = hn::And(near, hn::FirstN(d, all.count - j));
     if (hn::AllFalse(d, near)) continue;
+    const Packing packed(d, near);
     const auto keep = [&](Vec values, const AlignedFloats& to) {
-      hn::StoreU(hn::Compress(values, near), d, to.data() + list.count);
+      hn::StoreU(packed(values), d, to.data() + list.count);
     };
     keep(x, list.x);
     keep(y, list.y);

@@ -5,6 +5,8 @@
 #define HWY_TARGET_INCLUDE "surface/column_gather_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+// after highway.h
+#include "base/packing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meniscus {
@@ -31,8 +33,10 @@ std::size_t GatherColumn(const ColumnBins& bins, const ColumnSearch& search, flo
         const auto wanted = hn::And(hn::FirstN(d, end - at), hn::Gt(z, down_to));
         const auto weight = hn::NegMulAdd(hn::MulAdd(da, da, hn::Mul(db, db)), per_reach2, one);
         const auto near = hn::And(wanted, hn::Gt(weight, zero));
-        hn::CompressStore(weight, near, d, weights + count);
-        count += hn::CompressStore(z, near, d, places + count);
+        const Packing packed(d, near);
+        hn::StoreU(packed(weight), d, weights + count);
+        hn::StoreU(packed(z), d, places + count);
+        count += hn::CountTrue(d, near);
         const std::size_t seen = hn::CountTrue(d, wanted);
         at += seen;
         if (seen < lanes) break;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 
+#include "base/packing-inl.h"
 #include "surface/fours-inl.h"
 #include "surface/packet_sums-inl.h"
 #include "surface/vector3-inl.h"
@@ -93,8 +94,8 @@ HWY_NOINLINE void find_near(const PacketList& list, const MomentPoints& at, Near
   };
   near.reserve(list.count + 2 * kPacket, kSizes);
   near.count = 0;
-  const auto keep = [&](Vec values, auto of, const AlignedFloats& array) {
-    hn::StoreU(hn::Compress(values, of), d, array.data() + near.count);
+  const auto keep = [&](Vec values, const auto& packed, const AlignedFloats& array) {
+    hn::StoreU(packed(values), d, array.data() + near.count);
   };
   for (std::size_t i = 0; i < list.count; i += lanes) {
     const Vec x = hn::Mul(hn::Sub(hn::LoadU(d, list.x.data() + i), origin.x), per_radius);
@@ -105,12 +106,13 @@ HWY_NOINLINE void find_near(const PacketList& list, const MomentPoints& at, Near
     if (kSizes) per = hn::Div(hn::LoadU(d, list.per_normal_radius.data() + i), per_radius);
     const Vec per2 = hn::Mul(per, per);
     const auto reaches = hn::And(hn::Lt(hn::Mul(dot(off, off), per2), one), hn::FirstN(d, list.count - i));
-    keep(x, reaches, near.x);
-    keep(y, reaches, near.y);
-    keep(z, reaches, near.z);
+    const Packing packed(d, reaches);
+    keep(x, packed, near.x);
+    keep(y, packed, near.y);
+    keep(z, packed, near.z);
     if (kSizes) {
-      keep(per2, reaches, near.per2);
-      keep(hn::Div(one, hn::Mul(per2, per)), reaches, near.volume);
+      keep(per2, packed, near.per2);
+      keep(hn::Div(one, hn::Mul(per2, per)), packed, near.volume);
     }
     near.count += hn::CountTrue(d, reaches);
   }
@@ -169,8 +171,8 @@ HWY_INLINE void sums_at_four(const NearList& near, const float* x, const float* 
   Vec reach2 = hn::Set(d, (1.0f + apart) * (1.0f + apart));
   own.reserve(near.count + 2 * kPacket, kSizes);
   own.count = 0;
-  const auto keep = [&](Vec values, auto of, const AlignedFloats& array) {
-    hn::StoreU(hn::Compress(values, of), d, array.data() + own.count);
+  const auto keep = [&](Vec values, const auto& packed, const AlignedFloats& array) {
+    hn::StoreU(packed(values), d, array.data() + own.count);
   };
   for (std::size_t j = 0; j < near.count; j += lanes) {
     const Vec3V at{hn::Load(d, near.x.data() + j), hn::Load(d, near.y.data() + j), hn::Load(d, near.z.data() + j)};
@@ -180,12 +182,13 @@ HWY_INLINE void sums_at_four(const NearList& near, const float* x, const float* 
       reach2 = hn::Mul(reach, reach);
     }
     const auto inside = hn::Lt(dot(off, off), reach2);
-    keep(at.x, inside, own.x);
-    keep(at.y, inside, own.y);
-    keep(at.z, inside, own.z);
+    const Packing packed(d, inside);
+    keep(at.x, packed, own.x);
+    keep(at.y, packed, own.y);
+    keep(at.z, packed, own.z);
     if constexpr (kSizes) {
-      keep(hn::Load(d, near.per2.data() + j), inside, own.per2);
-      keep(hn::Load(d, near.volume.data() + j), inside, own.volume);
+      keep(hn::Load(d, near.per2.data() + j), packed, own.per2);
+      keep(hn::Load(d, near.volume.data() + j), packed, own.volume);
     }
     own.count += hn::CountTrue(d, inside);
   }

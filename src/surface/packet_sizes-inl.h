@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/packing-inl.h"
 #include "surface/packet.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -57,8 +58,9 @@ HWY_INLINE void gather_level(const RaycastField& all, const RaycastField& level,
       const auto near = hn::And(hn::Lt(off2, hn::Mul(own, own)), hn::FirstN(d, end - i));
       const std::size_t found = hn::CountTrue(d, near);
       if (found == 0) continue;
+      const Packing packed(d, near);
       const auto keep = [&](Vec values, const AlignedFloats& to) {
-        hn::CompressStore(values, near, d, to.data() + list.count);
+        hn::StoreU(packed(values), d, to.data() + list.count);
       };
       // s_j^3 W(0, h_j) is that of the largest times this ratio cubed.
       const Vec ratio = hn::Div(lengths, spacings);

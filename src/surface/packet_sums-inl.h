@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/packing-inl.h"
 #include "surface/packet.h"
 #include "surface/packet_sizes-inl.h"
 
@@ -30,8 +31,8 @@ HWY_INLINE Vec reciprocal_root(Vec v) {
 }
 
 /// Fills the list with the particles nearer than `radius` to the box, in their sorted order.
-HWY_MAYBE_UNUSED HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, float radius, bool colours,
-                              PacketList& list) {
+HWY_MAYBE_UNUSED HWY_NOINLINE void gather_list(const RaycastField& field, vec3 low, vec3 high, float radius,
+                                               bool colours, PacketList& list) {
   if (HWY_UNLIKELY(field.has_sizes())) return gather_sizes(field, low, high, radius, colours, list);
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
@@ -54,14 +55,18 @@ HWY_MAYBE_UNUSED HWY_NOINLINE void gather_list(const RaycastField& field, vec3 l
       const auto near = hn::And(hn::Lt(off2, radius2), hn::FirstN(d, end - i));
       const std::size_t found = hn::CountTrue(d, near);
       if (found == 0) continue;
-      hn::CompressStore(x, near, d, list.x.data() + list.count);
-      hn::CompressStore(y, near, d, list.y.data() + list.count);
-      hn::CompressStore(z, near, d, list.z.data() + list.count);
-      hn::CompressStore(hn::LoadU(d, field.mass.data() + i), near, d, list.mass.data() + list.count);
+      const Packing packed(d, near);
+      const auto keep = [&](Vec values, const AlignedFloats& to) {
+        hn::StoreU(packed(values), d, to.data() + list.count);
+      };
+      keep(x, list.x);
+      keep(y, list.y);
+      keep(z, list.z);
+      keep(hn::LoadU(d, field.mass.data() + i), list.mass);
       if (colours) {
-        hn::CompressStore(hn::LoadU(d, field.red.data() + i), near, d, list.red.data() + list.count);
-        hn::CompressStore(hn::LoadU(d, field.green.data() + i), near, d, list.green.data() + list.count);
-        hn::CompressStore(hn::LoadU(d, field.blue.data() + i), near, d, list.blue.data() + list.count);
+        keep(hn::LoadU(d, field.red.data() + i), list.red);
+        keep(hn::LoadU(d, field.green.data() + i), list.green);
+        keep(hn::LoadU(d, field.blue.data() + i), list.blue);
       }
       list.count += found;
     }
@@ -161,8 +166,8 @@ HWY_MAYBE_UNUSED HWY_NOINLINE void density_along_rays(const RaycastField& field,
       rho);
 }
 
-HWY_MAYBE_UNUSED HWY_NOINLINE void density_at_points(const RaycastField& field, const PacketList& list, const PacketPoints& points,
-                                    float* rho) {
+HWY_MAYBE_UNUSED HWY_NOINLINE void density_at_points(const RaycastField& field, const PacketList& list,
+                                                     const PacketPoints& points, float* rho) {
   const Tag d;
   sum_density_by_kernel(
       field, list,

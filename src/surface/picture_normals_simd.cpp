@@ -13,6 +13,7 @@
 // after highway.h
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"  // of the sums in packet_sums-inl.h only the list is used here
+#include "base/packing-inl.h"
 #include "surface/packet_normals-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -44,9 +45,10 @@ HWY_NOINLINE void gather_near(const RaycastField& field, const Bounds& box, Pack
       const Vec3V off{outside(x, low.x, high.x), outside(y, low.y, high.y), outside(z, low.z, high.z)};
       // Lanes past the run's end belong to other cells, which may be part of the box and come again.
       const auto near = hn::And(hn::Lt(dot(off, off), radius2), hn::FirstN(d, end - i));
-      hn::StoreU(hn::Compress(x, near), d, list.x.data() + count);
-      hn::StoreU(hn::Compress(y, near), d, list.y.data() + count);
-      hn::StoreU(hn::Compress(z, near), d, list.z.data() + count);
+      const Packing packed(d, near);
+      hn::StoreU(packed(x), d, list.x.data() + count);
+      hn::StoreU(packed(y), d, list.y.data() + count);
+      hn::StoreU(packed(z), d, list.z.data() + count);
       count += hn::CountTrue(d, near);
     }
     list.count = count;  // that reserve() keeps
