@@ -47,14 +47,13 @@ struct Layers {
 /// Adds a cell whose particles are all kept.
 void add_cell(const BandGrid& grid, int block, int cell, const BandGrid::Run& run, Layers& layers) {
   const glm::ivec3 place{cell % 8, cell / 8 % 8, cell / 64};
-  const float* const values[3] = {grid.x(), grid.y(), grid.z()};
   const vec3 low = grid.low(block);
   const auto count = static_cast<float>(run.end - run.begin);
+  vec3 sum{0};  // three at once: each waits for itself alone
+  for (std::size_t i = run.begin; i < run.end; ++i) sum += vec3{grid.x()[i], grid.y()[i], grid.z()[i]} - low;
   for (int axis = 0; axis < 3; ++axis) {
-    float sum = 0;
-    for (std::size_t i = run.begin; i < run.end; ++i) sum += values[axis][i] - low[axis];
     const float middle = static_cast<float>(place[axis]) + 0.5f;
-    layers.at[axis][place[axis]] += {1, count, sum / grid.cell_size() - count * middle};
+    layers.at[axis][place[axis]] += {1, count, sum[axis] / grid.cell_size() - count * middle};
   }
 }
 
