@@ -65,33 +65,22 @@ class FourRays {
   int first_;
 };
 
+/// Shape::bracket() as a kernel that sum_density() takes.
+template <class Shape>
+struct BracketShape {
+  static HWY_INLINE Vec at(Vec r2, Vec per_h) {
+    const Tag d;
+    const Vec one = hn::Set(d, 1.0f);
+    return Shape::bracket(hn::Max(hn::NegMulAdd(r2, hn::Mul(per_h, per_h), one), hn::Zero(d)), one);
+  }
+};
+
 /// rho to 1e-3 at sixteen places, rho[4 k + r] at t[r] + k step of ray r.
 template <class Shape, bool kSizes>
 HWY_NOINLINE void sum_samples(const RaycastField& field, const PacketList& list, const FourRays& rays, const float* t,
                               float step, float* rho) {
-  const Tag d;
-  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const float per_h = 1.0f / field.options.smoothing_length;
-  Vec per_h2 = hn::Set(d, per_h * per_h);
-  const float *lx = list.x.data(), *ly = list.y.data(), *lz = list.z.data(), *lm = list.mass.data();
-  for (int l = 0; l < kPacket; l += static_cast<int>(hn::Lanes(d))) {
-    Vec px, py, pz;
-    rays.samples(t, step, l, px, py, pz);
-    Vec sum = zero;
-    for (std::size_t j = 0; j < list.count; ++j) {
-      const Vec x = hn::Sub(px, hn::Set(d, lx[j])), y = hn::Sub(py, hn::Set(d, ly[j])),
-                z = hn::Sub(pz, hn::Set(d, lz[j]));
-      if constexpr (kSizes) {
-        const float own = list.per_smoothing.data()[j];
-        per_h2 = hn::Set(d, own * own);
-      }
-      const Vec r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
-      const Vec s = hn::Max(hn::NegMulAdd(r2, per_h2, one), zero);
-      sum = hn::Add(sum, Shape::bracket(s, hn::Set(d, lm[j])));
-    }
-    hn::Store(hn::Mul(sum, hn::Set(d, field.scale)), d, rho + l);
-    if (HWY_UNLIKELY(list.near_full)) fill_where_full(field.grid, px, py, pz, rho + l);
-  }
+  sum_density<BracketShape<Shape>, kSizes>(
+      field, list, [&](int l, Vec& x, Vec& y, Vec& z) { rays.samples(t, step, l, x, y, z); }, rho);
 }
 
 /// rho and its derivative along the ray, 1/m, at t[r] of ray r.
@@ -103,7 +92,8 @@ HWY_NOINLINE void sum_slopes(const RaycastField& field, const PacketList& list, 
   const Vec scale = hn::Set(d, field.scale), slope_scale = hn::Set(d, field.scale * Shape::kSlope);
   Vec per_h = hn::Set(d, 1.0f / field.options.smoothing_length);
   const float *lx = list.x.data(), *ly = list.y.data(), *lz = list.z.data(), *lm = list.mass.data();
-  alignas(64) float sums[kPacket], slopes[kPacket];
+  const int blocks = lanes / kCopies;
+  alignas(64) float totals[kPacket];
   for (int v = 0; v * lanes < kFour * kCopies; ++v) {
     const auto of = rays.copies(t, v);
     Vec sum = hn::Zero(d), rise = hn::Zero(d);
@@ -115,15 +105,10 @@ HWY_NOINLINE void sum_slopes(const RaycastField& field, const PacketList& list, 
       const Vec along = hn::MulAdd(x, of.dx, hn::MulAdd(y, of.dy, hn::Mul(z, of.dz)));
       Shape::exact(r2, along, per_h, side_by_side(lm + j), sum, rise);
     }
-    hn::Store(hn::Mul(sum, scale), d, sums + v * lanes);
-    hn::Store(hn::Mul(rise, slope_scale), d, slopes + v * lanes);
-  }
-  for (int r = 0; r < kFour; ++r) {
-    rho[r] = sums[r * kCopies];
-    slope[r] = slopes[r * kCopies];
-    for (int copy = 1; copy < kCopies; ++copy) {
-      rho[r] += sums[r * kCopies + copy];
-      slope[r] += slopes[r * kCopies + copy];
+    sum_copies(hn::Mul(sum, scale), hn::Mul(rise, slope_scale), hn::Zero(d), hn::Zero(d), totals);
+    for (int r = 0; r < blocks; ++r) {
+      rho[v * blocks + r] = totals[4 * r];
+      slope[v * blocks + r] = totals[4 * r + 1];
     }
   }
 }

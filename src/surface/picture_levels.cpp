@@ -1,5 +1,7 @@
 #include "surface/picture_levels.h"
 
+#include "surface/z_curve.h"
+
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surface/picture_levels.cpp"
@@ -206,9 +208,8 @@ void Foretelling::tile(int x0, int y0, int x1, int y1, Image<float>& depth, Tile
   }
   HWY_DYNAMIC_DISPATCH(Foretell)(tile);
   for (int y = y0; y < y1; ++y) std::copy_n(tile.depth[y - y0], x1 - x0, depth.row(y) + x0);
-  // In the order of a Z-shaped curve, so that pixels drawn together lie near each other.
-  for (int at = 0; at < kHalf * kHalf; ++at) {
-    const int i = (at & 1) | (at >> 1 & 2) | (at >> 2 & 4), j = (at >> 1 & 1) | (at >> 2 & 2) | (at >> 3 & 4);
+  for (int at = 0; at < kHalf * kHalf; ++at) {  // pixels drawn together have to lie near each other
+    const auto [i, j] = z_curve(at);
     for (int bits = tile.left[j][i]; bits != 0; bits &= bits - 1) {
       const int bit = __builtin_ctz(static_cast<unsigned>(bits)), which = bit % 3;
       (bit < 3 ? open : unknown).add(x0 + 2 * i + (which != 1), y0 + 2 * j + (which != 0));

@@ -3,6 +3,7 @@
 #include "surface/beam.h"
 #include "surface/packet_rays.h"
 #include "surface/picture_levels.h"
+#include "surface/z_curve.h"
 
 namespace meniscus {
 namespace {
@@ -48,9 +49,8 @@ class PictureMarch {
       Pixels pixels;
       for (int y = y0; y < y1; y += side)
         for (int x = x0; x < x1; x += side) {
-          for (int at = 0; at < side * side; ++at) {  // in the order of a Z-shaped curve
-            const int i = x + ((at & 1) | (at >> 1 & 2) | (at >> 2 & 4)),
-                      j = y + ((at >> 1 & 1) | (at >> 2 & 2) | (at >> 3 & 4));
+          for (int at = 0; at < side * side; ++at) {
+            const int i = x + z_curve(at).x, j = y + z_curve(at).y;
             if (i < x1 && j < y1 && may_hit(i * stride, j * stride)) add(pixels, i, j);
           }
           march(pixels, stride, depth);

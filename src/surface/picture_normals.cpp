@@ -4,6 +4,7 @@
 
 #include "surface/picture_blocks.h"
 #include "surface/picture_normals_simd.h"
+#include "surface/z_curve.h"
 
 namespace meniscus {
 namespace {
@@ -107,8 +108,8 @@ class PictureNormals {
         pixels.clear();
         for (int by = ly; by < ly + list; by += side)
           for (int bx = lx; bx < lx + list; bx += side)
-            for (int k = 0; k < 16; ++k) {  // in the order of a Z-shaped curve
-              const int x = bx + step * ((k & 1) | (k >> 1 & 2)), y = by + step * ((k >> 1 & 1) | (k >> 2 & 2));
+            for (int k = 0; k < 16; ++k) {
+              const int x = bx + step * z_curve(k).x, y = by + step * z_curve(k).y;
               if (x < x1 && y < y1) pixels.push_back({x, y});
             }
         normals_of_pixels(field_, view_, pixels, buffers_);
